@@ -18,7 +18,7 @@ class Permission(StrEnum):
     SESSION_READ = "session:read"
     SESSION_WRITE = "session:write"
     REPORT_READ = "report:read"
-    TOKEN_MANAGE = "token:manage"
+    TOKEN_MANAGE = "token:manage"  # noqa: S105
     USER_MANAGE = "user:manage"
     AUDIT_READ = "audit:read"
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import datetime as dt
 import sqlite3
 import threading
-from collections.abc import Callable
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -178,11 +179,21 @@ class Database:
         """A new transaction; close it whatever happens."""
         return Transaction(self, site_id)
 
-    def change(self, work: Callable[[Session], None]) -> None:
-        """Do ``work`` in a write transaction of its own, on rows of any site."""
+    @contextmanager
+    def reading(self) -> Iterator[Session]:
+        """A session on the rows of all sites, for what happens before anybody is known."""
         transaction = self.transaction(None)
         try:
-            work(transaction.write())
+            yield transaction.read()
+        finally:
+            transaction.close()
+
+    @contextmanager
+    def writing(self) -> Iterator[Session]:
+        """A session on the rows of all sites that commits at the end, and on an error changes nothing."""
+        transaction = self.transaction(None)
+        try:
+            yield transaction.write()
             transaction.commit()
         finally:
             transaction.close()

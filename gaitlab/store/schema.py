@@ -36,7 +36,9 @@ def _revisions() -> tuple[str, frozenset[str]]:
     script = ScriptDirectory.from_config(_config())
     head = script.get_current_head()
     if head is None:
-        raise Misconfigured("migrations", "The migrations are missing from this installation.", "Install it again.")
+        raise Misconfigured(
+            "migrations", "The migrations are missing from this installation.", "Install it again."
+        )
     return head, frozenset(revision.revision for revision in script.walk_revisions())
 
 
@@ -86,4 +88,6 @@ def at_head(engine: Engine) -> bool:
 def differences(engine: Engine) -> list[Any]:
     """What the database's schema lacks or has too much, compared with the mapped classes."""
     with engine.connect() as connection:
-        return list(compare_metadata(MigrationContext.configure(connection, opts={"compare_type": True}), METADATA))
+        return list(
+            compare_metadata(MigrationContext.configure(connection, opts={"compare_type": True}), METADATA)
+        )
