@@ -85,7 +85,7 @@ class LoginAttempt(Identified, Base):
 
     __tablename__ = "login_attempt"
     __table_args__ = (
-        CheckConstraint("outcome IN ('failed', 'succeeded')", name="outcome"),
+        CheckConstraint("outcome IN ('failed', 'succeeded', 'limited')", name="outcome"),
         Index(None, "account_key", "at"),
         Index(None, "address_key", "at"),
     )

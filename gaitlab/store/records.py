@@ -14,12 +14,12 @@ from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session as Database
 from sqlalchemy.orm import contains_eager, selectinload
 
+from gaitlab.store.base import Base
 from gaitlab.store.tables import (
     Analysis,
     AuditEvent,
     Idempotency,
     Patient,
-    RawFile,
     Session,
     Trial,
     TrialFile,
@@ -148,7 +148,7 @@ def placements_of_devices(scope: Scope, devices: Sequence[str]) -> dict[str, str
     return {device: placement for device, placement in rows if device is not None}
 
 
-def add_unless_there(scope: Scope, row: RawFile | Idempotency) -> bool:
+def add_unless_there(scope: Scope, row: Base) -> bool:
     """Add a row, or leave the one of the same key that another writer was faster to add; was it added?"""
     try:
         with scope.db.begin_nested():

@@ -109,7 +109,7 @@ def create_tables() -> None:
         sa.Column("account_key", sa.String(length=64), nullable=False),
         sa.Column("address_key", sa.String(length=64), nullable=False),
         sa.Column("outcome", sa.String(length=10), nullable=False),
-        sa.CheckConstraint("outcome IN ('failed', 'succeeded')", name="ck_login_attempt_outcome"),
+        sa.CheckConstraint("outcome IN ('failed', 'succeeded', 'limited')", name="ck_login_attempt_outcome"),
         sa.PrimaryKeyConstraint("id", name="pk_login_attempt"),
     )
     op.create_index("ix_login_attempt_account_key_at", "login_attempt", ["account_key", "at"], unique=False)
