@@ -8,6 +8,7 @@ import unicodedata
 from collections.abc import Iterable
 from functools import cache
 from importlib.resources import files
+from itertools import pairwise
 
 from pwdlib import PasswordHash
 from pwdlib.exceptions import PwdlibError
@@ -100,7 +101,7 @@ def _own_part_is_small(text: str, personal: set[str]) -> bool:
 def _without_rows(text: str) -> str:
     """Drop each character that follows from the one before it: the same, or its neighbour in the alphabet."""
     kept = [text[:1]]
-    for before, character in zip(text, text[1:], strict=False):
+    for before, character in pairwise(text):
         if abs(ord(character) - ord(before)) > 1:
             kept.append(character)
     return "".join(kept)

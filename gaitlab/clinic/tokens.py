@@ -12,7 +12,7 @@ from sqlalchemy import select, update
 
 from gaitlab.clinic.access import NEVER_FOR_TOKENS, Permission, Principal, Role, granted
 from gaitlab.clinic.clinic import Clinic
-from gaitlab.clinic.desk import Desk, actor_of, not_found
+from gaitlab.clinic.desk import Desk, not_found
 from gaitlab.clinic.logins import normal_email
 from gaitlab.clinic.views import TokenView
 from gaitlab.errors import InputError, NotAllowed
@@ -118,21 +118,27 @@ def principal_of_token(clinic: Clinic, token: str) -> Principal | None:
         return None
     row, owner = found
     now = clinic.now()
-    if not hmac.compare_digest(row.secret_sha256, _hash(secret)):
-        return _refused(clinic, row, "wrong_secret", now)
-    if row.revoked_at is not None:
-        return _refused(clinic, row, "revoked", now)
-    if row.expires_at <= now:
-        return _refused(clinic, row, "expired", now)
-    if owner.disabled_at is not None:
-        return _refused(clinic, row, "owner_disabled", now)
+    refusal = _refusal(row, owner, secret, now)
+    if refusal:
+        _note_refusal(clinic, row, refusal, now)
+        return None
     if row.last_used_at is None or now - row.last_used_at >= _NOTED_EVERY:
         with clinic.database.writing() as db:
             db.execute(update(ApiToken).where(ApiToken.id == row.id).values(last_used_at=now))
     return _principal(row, owner)
 
 
-def _refused(clinic: Clinic, token: ApiToken, why: str, now: dt.datetime) -> None:
+def _refusal(token: ApiToken, owner: Account, secret: str, now: dt.datetime) -> str:
+    if not hmac.compare_digest(token.secret_sha256, _hash(secret)):
+        return "wrong_secret"
+    if token.revoked_at is not None:
+        return "revoked"
+    if token.expires_at <= now:
+        return "expired"
+    return "owner_disabled" if owner.disabled_at is not None else ""
+
+
+def _note_refusal(clinic: Clinic, token: ApiToken, why: str, now: dt.datetime) -> None:
     """Note the refusal, at most once a minute per token, so that nobody can flood the audit trail."""
     if token.last_refused_at is not None and now - token.last_refused_at < _NOTED_EVERY:
         return

@@ -31,6 +31,19 @@ def _plain_text(text: str) -> str:
     return text
 
 
+def _not_in_the_future(year: int) -> int:
+    if year > dt.datetime.now(dt.UTC).year:
+        raise ValueError("must not be in the future")
+    return year
+
+
+def _past_or_today(date: dt.date) -> dt.date:
+    # The day after today in UTC has begun somewhere.
+    if date > dt.datetime.now(dt.UTC).date() + dt.timedelta(days=1):
+        raise ValueError("must not be in the future")
+    return date
+
+
 Line = Annotated[str, AfterValidator(_one_line)]
 Text = Annotated[str, AfterValidator(_plain_text)]
 Sex = Literal["female", "male", "other", "unknown"]
@@ -46,13 +59,22 @@ class Form(BaseModel):
 
     model_config = ConfigDict(extra="forbid", str_strip_whitespace=True, allow_inf_nan=False)
 
+    @model_validator(mode="before")
+    @classmethod
+    def _left_empty(cls, data: Any) -> Any:
+        """A field left empty on a page is a field left out, where it may be."""
+        if not isinstance(data, Mapping):
+            return data
+        optional = {name for name, field in cls.model_fields.items() if field.default is None}
+        return {name: None if name in optional and value == "" else value for name, value in data.items()}
+
 
 class PatientForm(Form):
     """A patient as typed in. ``code`` identifies them in the clinic and is unique within the site."""
 
     code: Line = Field(min_length=1, max_length=64)
     sex: Sex = "unknown"
-    birth_year: int | None = Field(default=None, ge=1890, le=2100)
+    birth_year: Annotated[int, Field(ge=1890), AfterValidator(_not_in_the_future)] | None = None
     height_m: float | None = Field(default=None, ge=0.4, le=2.6)
     weight_kg: float | None = Field(default=None, ge=2, le=400)
     leg_length_m: float | None = Field(default=None, ge=0.2, le=1.5)
@@ -63,7 +85,7 @@ class PatientForm(Form):
 class SessionForm(Form):
     """A session as typed in. ``course_m`` is set to the test's own length where it is left out."""
 
-    date: dt.date
+    date: Annotated[dt.date, AfterValidator(_past_or_today)]
     test: Test
     course_m: float | None = Field(default=None, ge=1, le=1000)
     note: Text = Field(default="", max_length=2000)
@@ -206,5 +228,6 @@ def read_form(form: type[FormT], data: Mapping[str, Any]) -> FormT:
         first = problem.errors(include_url=False, include_input=False)[0]
         field = ".".join(str(part) for part in first["loc"]) or None
         unknown = first["type"] == "extra_forbidden"
-        message = f"There is no field of the name {field}." if unknown else f"{first['msg']}."
+        said = first["msg"].removeprefix("Value error, ")
+        message = f"There is no field of the name {field}." if unknown else f"{said[:1].upper()}{said[1:]}."
         raise InputError("invalid_field", message, column=field) from None

@@ -15,6 +15,7 @@ from sqlalchemy.orm import Session as Database
 from sqlalchemy.orm import contains_eager, selectinload
 
 from gaitlab.store.base import Base
+from gaitlab.store.people import Account
 from gaitlab.store.tables import (
     Analysis,
     AuditEvent,
@@ -32,6 +33,9 @@ class Scope:
 
     db: Database
     site_id: str
+
+
+LONGEST_CODE_KEY = 256
 
 
 def code_key(code: str) -> str:
@@ -172,6 +176,16 @@ def events(scope: Scope, *, patient_id: str | None, limit: int, offset: int) -> 
     return list(scope.db.scalars(found.order_by(AuditEvent.seq.desc()).limit(limit).offset(offset))), total
 
 
-def current(analyses: Sequence[Analysis]) -> Analysis:
+def account_names(scope: Scope, account_ids: Sequence[str]) -> dict[str, str]:
+    """Names of these accounts of the site."""
+    rows = scope.db.execute(
+        select(Account.id, Account.name).where(
+            Account.site_id == scope.site_id, Account.id.in_(set(account_ids))
+        )
+    )
+    return dict(rows.tuples())
+
+
+def current(trial: Trial) -> Analysis:
     """The newest of a trial's analyses."""
-    return max(analyses, key=lambda analysis: analysis.number)
+    return max(trial.analyses, key=lambda analysis: analysis.number)

@@ -172,7 +172,7 @@ class Analysis(Identified, OfSite, Base):
     method: Mapped[str] = mapped_column(String(50))
     settings: Mapped[dict[str, Any]] = mapped_column(JSON)
     settings_sha256: Mapped[str] = mapped_column(Sha256)
-    result_json: Mapped[str] = mapped_column(Text)
+    result_json: Mapped[str] = mapped_column(Text, deferred=True)
     series_sha256: Mapped[str] = mapped_column(Sha256)
     created_at: Mapped[dt.datetime]
     created_by: Mapped[str] = mapped_column(String(26))
