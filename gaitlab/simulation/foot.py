@@ -1,0 +1,213 @@
+"""How a foot moves between its footfalls.
+
+A foot stands flat and perfectly still; its heel rises and it rolls about the forefoot; it leaves the floor,
+swings with the toes first down and then up; it lands on the rear edge of the heel and comes down flat. With
+the pitch θ(t) of the sole (toes up positive), its progress s(t) from one footfall to the next and its lift
+z(t), each a quintic track, the point of the sole under the ankle is at
+
+    footfall + s·(next footfall − footfall) + X(θ)·heading + (H(θ) + z)·up,
+
+where X and H say how a sole that ends at heel and forefoot rolls on the floor without slipping. So in contact
+the foot never slips, and it is never below the floor.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gaitlab.recording.model import Bools, Floats, Side
+from gaitlab.simulation.footfalls import Footfalls
+from gaitlab.simulation.jet import Jet, Track, sin_cos
+from gaitlab.simulation.motion import Motion, Pose
+from gaitlab.simulation.walk import Person, leftward
+
+#: The foot speeds up over the first and slows down over the last part of the swing (shares of the swing).
+_SPEED_UP, _SLOW_DOWN = 0.38, 0.36
+#: After foot off the sole goes on tipping for this share of the swing, then turns back.
+_TIPPING = 0.17
+#: Waves of the shock at initial contact between contact and flat foot.
+_SHOCK_WAVES = 2.5
+#: Roll of the foot in swing, and rocking of the sensor by the shock (rad).
+_SWING_ROLL_RAD, _SHOCK_ROLL_RAD = 0.12, 0.012
+#: Direction of the shock in foot coordinates: backwards, outwards, up.
+_SHOCK_DIRECTION = (-0.6, 0.2, 0.77)
+
+
+@dataclass(frozen=True, eq=False)
+class FootMotion:
+    """One foot: its pose at any time, and the shock that its initial contacts give."""
+
+    side: Side
+    person: Person
+    footfalls: Footfalls
+
+    def __post_init__(self) -> None:
+        falls = self.footfalls
+        tracks = {
+            "x": _between(falls, falls.position_m[:, 0]),
+            "y": _between(falls, falls.position_m[:, 1]),
+            "yaw": _between(falls, falls.heading_rad),
+            "tip": _tip(falls),
+            "swing": _swing_bump(falls),
+        }
+        object.__setattr__(self, "_tracks", tracks)
+
+    def pose(self, t_s: Floats) -> Pose:
+        """Pose of the sole at the instants ``t_s``; its origin is the point of the sole under the ankle."""
+        tracks: dict[str, Track] = self.__dict__["_tracks"]
+        outwards = leftward(self.side)
+        swing_no, swinging = _swing_at(self.footfalls, t_s)
+        yaw, tip, bump = tracks["yaw"](t_s), tracks["tip"](t_s), tracks["swing"](t_s)
+        lift = np.array([gait.lift_m for gait in self.footfalls.gaits[1:]] or [0.0])[swing_no]
+        aside = np.array([gait.circumduction_m for gait in self.footfalls.gaits[1:]] or [0.0])[swing_no]
+        forward, up = _rolling(tip, self._softening(swing_no, swinging), self.person)
+        sine, cosine = sin_cos(yaw)
+        left = bump * (outwards * aside)
+        return Pose(
+            x=tracks["x"](t_s) + cosine * forward - sine * left,
+            y=tracks["y"](t_s) + sine * forward + cosine * left,
+            z=up + bump * lift,
+            yaw=yaw,
+            pitch=-tip,
+            roll=bump * (outwards * _SWING_ROLL_RAD),
+        )
+
+    def sensor(self, t_s: Floats) -> Motion:
+        """Movement of the foot's sensor, shaken by each initial contact."""
+        sole, shock = self.pose(t_s), self.shock(t_s)
+        shaken = replace(sole, roll=sole.roll + shock * _SHOCK_ROLL_RAD)
+        forward, left, up = self.shock_place(shock)
+        a, b, c = self.person.foot_sensor_m
+        return shaken.motion((forward + a, left + b, up + c))
+
+    def shock(self, t_s: Floats) -> Jet:
+        """A short damped vibration after each initial contact, 1 at its strongest; zero once the foot is
+        flat."""
+        falls = self.footfalls
+        fall = np.clip(np.searchsorted(falls.initial_contact_s, t_s, side="right") - 1, 0, None)
+        length = np.array([gait.landing_s for gait in falls.gaits])[fall]
+        strength = np.where(fall > 0, falls.effort[fall], 0.0)
+        u = np.clip((t_s - falls.initial_contact_s[fall]) / length, 0.0, 1.0)
+        zero = np.zeros_like(u)
+        inner = Jet(u, np.where((u > 0.0) & (u < 1.0), 1.0 / length, 0.0), zero)
+        rest = 1.0 - u
+        envelope = inner.through(
+            64.0 * (u * rest) ** 3,
+            192.0 * (u * rest) ** 2 * (rest - u),
+            384.0 * u * rest * ((rest - u) ** 2 - u * rest),
+        )
+        return envelope * sin_cos(inner * (2.0 * np.pi * _SHOCK_WAVES))[0] * strength
+
+    def shock_place(self, shock: Jet, share: float = 1.0) -> tuple[Jet, Jet, Jet]:
+        """Displacement (forward, left, up) in metres that a shock gives a sensor."""
+        gait = self.footfalls.gaits[-1]
+        frequency = 2.0 * np.pi * _SHOCK_WAVES / gait.landing_s
+        amplitude = share * gait.heel_strike_mps2 / frequency**2
+        outwards = leftward(self.side)
+        back, out, up = _SHOCK_DIRECTION
+        return shock * (amplitude * back), shock * (amplitude * out * outwards), shock * (amplitude * up)
+
+    def _softening(self, swing_no: np.ndarray, swinging: Bools) -> Floats:
+        """Sine of the pitch below which the foot, in the air, is turned over its edges softly; 0 in
+        contact."""
+        smallest = [
+            0.9 * np.sin(effort * min(gait.toe_up_rad, gait.heel_rise_rad))
+            for effort, gait in zip(self.footfalls.effort[1:], self.footfalls.gaits[1:], strict=True)
+        ]
+        return np.where(swinging, np.array(smallest or [0.0])[swing_no], 0.0)
+
+
+def _swing_at(falls: Footfalls, t_s: Floats) -> tuple[np.ndarray, Bools]:
+    """For each instant the swing under way or next to come (0 is the one after the first contact), and
+    whether it is."""
+    n = max(len(falls.foot_off_s) - 2, 0)
+    number = np.searchsorted(falls.initial_contact_s[1:], t_s, side="right")
+    number = np.clip(number, 0, n)
+    return number, (t_s > falls.foot_off_s[number]) & (number < len(falls.foot_off_s) - 1)
+
+
+def _between(falls: Footfalls, value: Floats) -> Track:
+    """Track that stays at ``value[k]`` during contact k and goes over to the next while the foot swings."""
+    start, swing = falls.foot_off_s[:-1], falls.initial_contact_s[1:] - falls.foot_off_s[:-1]
+    step = np.diff(value)
+    speed = step / (swing * (1.0 - 0.5 * (_SPEED_UP + _SLOW_DOWN)))
+    zero = np.zeros_like(step)
+    columns = [
+        (start, value[:-1], zero),
+        (start + _SPEED_UP * swing, value[:-1] + 0.5 * _SPEED_UP * swing * speed, speed),
+        (start + (1.0 - _SLOW_DOWN) * swing, value[1:] - 0.5 * _SLOW_DOWN * swing * speed, speed),
+        (start + swing, value[1:], zero),
+    ]
+    knots, values, rates = (np.column_stack(column).ravel() for column in zip(*columns, strict=True))
+    return _track(knots, values, rates, np.zeros_like(knots), float(value[0]))
+
+
+def _tip(falls: Footfalls) -> Track:
+    """Pitch of the sole, toes up positive."""
+    gaits = falls.gaits[1:]
+    rise = falls.effort[1:] * np.array([gait.heel_rise_rad for gait in gaits])
+    toe_up = falls.effort[1:] * np.array([gait.toe_up_rad for gait in gaits])
+    landing = np.array([gait.landing_s for gait in gaits])
+    heel_off, foot_off, contact = falls.heel_off_s[:-1], falls.foot_off_s[:-1], falls.initial_contact_s[1:]
+    rising, swing = foot_off - heel_off, contact - foot_off
+    speed, tipping = 2.0 * rise / rising, _TIPPING * swing
+    zero = np.zeros_like(rise)
+    columns = [
+        (heel_off, zero, zero, zero),
+        (foot_off, -rise, -speed, 4.0 * rise / rising**2),
+        (foot_off + tipping, -rise - 0.42 * speed * tipping, zero, speed / tipping),
+        (contact, toe_up, zero, -2.0 * toe_up / landing**2),
+        (contact + landing, zero, zero, zero),
+    ]
+    knots, values, rates, bends = (np.column_stack(column).ravel() for column in zip(*columns, strict=True))
+    return _track(knots, values, rates, bends, 0.0)
+
+
+def _swing_bump(falls: Footfalls) -> Track:
+    """Zero in contact, one in mid-swing."""
+    start, end = falls.foot_off_s[:-1], falls.initial_contact_s[1:]
+    knots = np.column_stack([start, 0.5 * (start + end), end]).ravel()
+    values = np.tile([0.0, 1.0, 0.0], len(start))
+    bends = np.column_stack([0 * start, -8.0 / (end - start) ** 2, 0 * start]).ravel()
+    return _track(knots, values, np.zeros_like(knots), bends, 0.0)
+
+
+def _track(knots: Floats, values: Floats, rates: Floats, bends: Floats, constant: float) -> Track:
+    """The track through these knots, or a constant where the foot makes no step."""
+    if len(knots) == 0:
+        return Track.through(np.array([0.0, 1.0]), np.full(2, constant), np.zeros(2), np.zeros(2))
+    return Track.through(knots, values, rates, bends)
+
+
+def _rolling(tip: Jet, softening: Floats, person: Person) -> tuple[Jet, Jet]:
+    """How far forward and up the ankle's point of the sole goes when the sole tips on its heel or forefoot
+    edge.
+
+    A convex sole with support function H(θ) rolls by X(θ) = −∫H dθ. With a sharp heel edge h behind and a
+    forefoot edge b before the point, H = h·sin θ, X = −h(1 − cos θ) for θ > 0, and H = b·|sin θ|, X = b(1 −
+    cos θ) for θ < 0. In the air, where only a smooth path matters, |sin θ| and sgn θ are replaced below
+    ``softening`` by polynomials that never lie under |sin θ| and meet it with two equal derivatives.
+    """
+    sine, cosine = sin_cos(tip)
+    s = sine.value
+    soft = np.where(softening > 0.0, softening, 1.0)
+    w = np.clip(s / soft, -1.0, 1.0)
+    inside = (softening > 0.0) & (np.abs(s) < softening)
+    w2 = w * w
+    size = sine.through(
+        np.where(inside, soft * (5.0 + 15.0 * w2 - 5.0 * w2**2 + w2**3) / 16.0, np.abs(s)),
+        np.where(inside, w * (30.0 - 20.0 * w2 + 6.0 * w2**2) / 16.0, np.sign(s)),
+        np.where(inside, (30.0 - 60.0 * w2 + 30.0 * w2**2) / (16.0 * soft), 0.0),
+    )
+    sign = sine.through(
+        np.where(inside, w * (35.0 - 35.0 * w2 + 21.0 * w2**2 - 5.0 * w2**3) / 16.0, np.sign(s)),
+        np.where(inside, 35.0 * (1.0 - w2) ** 3 / (16.0 * soft), 0.0),
+        np.where(inside, -210.0 * w * (1.0 - w2) ** 2 / (16.0 * soft**2), 0.0),
+    )
+    heel, forefoot = person.heel_m, person.forefoot_m
+    half_sum, half_difference = 0.5 * (heel + forefoot), 0.5 * (forefoot - heel)
+    up = size * half_sum + sine * (-half_difference)
+    forward = (-cosine + 1.0) * (half_difference + (-half_sum) * sign)
+    return forward, up
