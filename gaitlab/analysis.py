@@ -2,38 +2,178 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
-from gaitlab.recording.model import Recording
+import numpy as np
+
+from gaitlab import quality
+from gaitlab.errors import InputError
+from gaitlab.gait import course as walking
+from gaitlab.gait import lengths, timing
+from gaitlab.gait.knees import knee_gait, knee_parameters
+from gaitlab.gait.model import Gait
+from gaitlab.gait.strides import find_steps, foot_gait
+from gaitlab.motion.foot import track_foot
+from gaitlab.motion.heading import Course, find_course, to_common_frame
+from gaitlab.motion.knee import track_knee
+from gaitlab.motion.model import FootMotion, KneeMotion
+from gaitlab.motion.offset import STANDARD_GRAVITY_MPS2
+from gaitlab.outcome import result_of
+from gaitlab.recording.model import Placement, Recording, Side
 from gaitlab.result import Result
-from gaitlab.series import Series
+from gaitlab.series import SensorSeries, Series
+from gaitlab.settings import METHODS, Settings
 
-
-@dataclass(frozen=True)
-class Settings:
-    """What can be chosen for an analysis; stored with every result.
-
-    Attributes
-    ----------
-    method : str
-        ``gaitlab`` or ``ikizoglu2018`` (the paper to the letter).
-    course_m : float or None
-        Length of the timed course; None for a free walk.
-    """
-
-    method: str = "gaitlab"
-    course_m: float | None = None
+__all__ = ["METHODS", "Analysis", "Settings", "analyze"]
 
 
 @dataclass(frozen=True, eq=False)
 class Analysis:
-    """An analysed recording: the result and the series behind it."""
+    """An analysed recording: the result, the series behind it, and the movement for whoever wants more."""
 
     recording: Recording
+    gait: Gait
     result: Result
     series: Series
 
 
 def analyze(recording: Recording, settings: Settings | None = None) -> Analysis:
-    """Reconstruct how each foot and knee moved and measure the gait."""
-    raise NotImplementedError
+    """Reconstruct how each foot and knee moved and measure the gait.
+
+    Raises
+    ------
+    InputError
+        Where the recording cannot be analysed at all: no foot, too short, neither gyroscope nor orientation, foot and knee
+        swapped, unknown method. Poor data is not an error: it gives "not determinable" with the reason.
+    """
+    settings = settings or Settings()
+    _check(recording, settings)
+    feet, knees, course = _reconstruct(recording, settings)
+    quality.check_placements(feet, knees)
+    gait = _measure(recording, settings, feet, knees, course)
+    result = result_of(recording, settings, gait)
+    return Analysis(recording, gait, result, _series(gait))
+
+
+def _check(recording: Recording, settings: Settings) -> None:
+    if settings.method not in METHODS:
+        raise InputError(
+            "unknown_method", f"There is no method {settings.method!r}.", f"Choose {' or '.join(METHODS)}."
+        )
+    if settings.course_m is not None and not 1.0 <= settings.course_m <= 1000.0:
+        raise InputError(
+            "course_length", "The course must be between 1 m and 1000 m long.", "Give its length in metres."
+        )
+    if not any(placement.is_foot for placement in recording.sensors):
+        raise InputError(
+            "no_foot",
+            "The recording has no foot sensor.",
+            "Add the file of at least one foot, or correct the placement.",
+        )
+    quality.check_length(recording)
+
+
+def _reconstruct(
+    recording: Recording, settings: Settings
+) -> tuple[dict[Side, FootMotion], dict[Side, KneeMotion], Course]:
+    """Foot paths, knee paths and the course, in one world frame."""
+    motions = {
+        placement.side: track_foot(sensor, recording.time_s(placement), settings.method, settings.orientation)
+        for placement, sensor in recording.sensors.items()
+        if placement.is_foot
+    }
+    course = find_course(motions)
+    feet, moves = to_common_frame(motions, course)
+    knees = {}
+    for placement, sensor in recording.sensors.items():
+        side = placement.side
+        if placement.is_foot or side not in motions:
+            continue
+        shift = _knee_shift(recording, side)
+        time_s = recording.time_s(placement)
+        knee = track_knee(sensor, time_s, motions[side], shift, settings.method, settings.orientation)
+        yaw, _ = moves[side]
+        turned = knee.turned(yaw)
+        knees[side] = turned.moved(_above_foot(turned, feet[side], shift))
+    return feet, knees, course
+
+
+def _knee_shift(recording: Recording, side: Side) -> int:
+    """Knee row = foot row + shift."""
+    foot, knee = recording.sensors[Placement.foot(side)], recording.sensors[Placement.knee(side)]
+    return foot.first_packet - knee.first_packet
+
+
+def _above_foot(knee: KneeMotion, foot: FootMotion, shift: int) -> np.ndarray:
+    """Shift that puts the knee above its foot at the foot's first rest; its height counts from where it is then."""
+    row = int(foot.rests.moment[0]) if len(foot.rests) else 0
+    there = foot.position_m[row] * np.array([1.0, 1.0, 0.0])
+    here = knee.position_m[min(max(row + shift, 0), knee.n_samples - 1)]
+    difference: np.ndarray = there - here
+    return difference
+
+
+def _measure(
+    recording: Recording,
+    settings: Settings,
+    motions: Mapping[Side, FootMotion],
+    knee_motions: Mapping[Side, KneeMotion],
+    course: Course,
+) -> Gait:
+    feet = {
+        side: foot_gait(
+            motion, course, abs(motion.offsets.gravity_mps2 / STANDARD_GRAVITY_MPS2 - 1.0) / np.sqrt(3.0)
+        )
+        for side, motion in motions.items()
+    }
+    knees = {
+        side: knee_gait(motion, feet[side], _knee_shift(recording, side))
+        for side, motion in knee_motions.items()
+    }
+    steps = find_steps(feet)
+    timed = walking.time_course(feet, course, settings.course_m)
+    parameters = (
+        *walking.timed_walk(feet, timed, course),
+        *walking.speeds(feet),
+        *lengths.traversed_distance(feet),
+        *lengths.stride_length(feet),
+        *lengths.step_length(feet, steps),
+        *lengths.step_width(feet, steps),
+        *timing.times_and_phases(feet, steps),
+        timing.stop_duration(feet),
+        *walking.turns(course),
+        walking.path_deviation(feet, course),
+        *walking.start_to_end(feet),
+        *knee_parameters(knees),
+    )
+    findings = (*recording.findings, *quality.findings(recording, feet, knees))
+    return Gait(feet, knees, course, timed, quality.with_reserve(parameters, findings), findings)
+
+
+def _series(gait: Gait) -> dict[Placement, SensorSeries]:
+    series = {}
+    for side, foot in gait.feet.items():
+        rest = foot.motion.rests.mask(foot.motion.n_samples)
+        series[Placement.foot(side)] = _one_series(foot.motion, rest)
+        if side in gait.knees:
+            knee = gait.knees[side].motion
+            rows = np.round((knee.time_s - foot.motion.time_s[0]) * knee.rate_hz).astype(np.intp)
+            inside = (rows >= 0) & (rows < len(rest))
+            foot_rests = np.zeros(knee.n_samples, dtype=np.bool_)
+            foot_rests[inside] = rest[rows[inside]]
+            series[Placement.knee(side)] = _one_series(knee, foot_rests)
+    return {placement: series[placement] for placement in Placement if placement in series}
+
+
+def _one_series(motion: FootMotion | KneeMotion, rest: np.ndarray) -> SensorSeries:
+    return SensorSeries(
+        motion.time_s,
+        ~motion.received,
+        rest,
+        motion.acceleration_mps2,
+        motion.velocity_mps,
+        motion.position_m,
+        motion.raw_velocity_mps,
+        motion.raw_position_m,
+    )

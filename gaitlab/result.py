@@ -162,7 +162,7 @@ class Parameter(_Part):
     decimals: int
 
 
-class Warning_(_Part):
+class ResultWarning(_Part):
     """Something the reader should know; ``placement`` where it concerns one sensor."""
 
     code: str
@@ -183,11 +183,14 @@ class Result(BaseModel):
     knees: dict[Literal["left", "right"], Knee]
     walk: Walk
     parameters: tuple[Parameter, ...]
-    warnings: tuple[Warning_, ...]
+    warnings: tuple[ResultWarning, ...]
 
     def to_json(self) -> str:
         """Canonical JSON: the same result always has the same bytes."""
-        return json.dumps(self.model_dump(mode="json", by_alias=True), sort_keys=True, indent=1, allow_nan=False) + "\n"
+        return (
+            json.dumps(self.model_dump(mode="json", by_alias=True), sort_keys=True, indent=1, allow_nan=False)
+            + "\n"
+        )
 
     def parameter(self, name: str, side: str = "both") -> Parameter | None:
         """Return one parameter, or None where this result has none of that name and side."""

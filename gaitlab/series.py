@@ -40,7 +40,11 @@ class SensorSeries:
 
     def to_frame(self) -> pd.DataFrame:
         """The fixed columns of ``--series``."""
-        columns = {"t_s": self.t_s.round(6), "lost": self.lost.astype(np.int8), "rest": self.rest.astype(np.int8)}
+        columns = {
+            "t_s": self.t_s.round(6),
+            "lost": self.lost.astype(np.int8),
+            "rest": self.rest.astype(np.int8),
+        }
         for stem, unit, values in (
             ("a", "mps2", self.acceleration_mps2),
             ("v", "mps", self.velocity_mps),

@@ -90,4 +90,6 @@ def measured(
     """A parameter with its value; a value that is not finite becomes "not determinable"."""
     if not math.isfinite(value):
         return not_determinable(definition, side, reason or "The computation has no finite result.", n)
-    return Measurement(definition, side, float(value), None if sd is None else float(sd), n, Status.OK, reason)
+    return Measurement(
+        definition, side, float(value), None if sd is None else float(sd), n, Status.OK, reason
+    )

@@ -1,0 +1,57 @@
+"""Means over strides with the uncertainty of the measurement, and their left-right combination."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gaitlab.gait.measurement import Definition, MeasuredSide, Measurement, Status, measured, not_determinable
+from gaitlab.recording.model import Floats, Side
+
+FEW_STRIDES = 6
+"""Fewer gait cycles than this want attention: Motti Ader et al. 2020, Biosensors 10:128, for foot sensors in multiple sclerosis."""
+
+
+def mean_of(
+    definition: Definition,
+    side: Side,
+    values: Floats,
+    independent_sd: Floats | float,
+    common_sd: float,
+    reason: str,
+) -> Measurement:
+    """Mean of ``values`` with u² = Σ u_independent²/n² + u_common²; not determinable, with ``reason``, where there are none.
+
+    The scatter between strides is the patient's and is not part of it.
+    """
+    n = len(values)
+    if n == 0:
+        return not_determinable(definition, MeasuredSide(side), reason)
+    independent = np.broadcast_to(np.asarray(independent_sd, dtype=np.float64), (n,))
+    sd = float(np.sqrt(np.sum(independent**2) / n**2 + common_sd**2))
+    return with_count(measured(definition, MeasuredSide(side), float(values.mean()), sd, n))
+
+
+def with_count(measurement: Measurement) -> Measurement:
+    """Mark a value that rests on few strides."""
+    if 0 < measurement.n < FEW_STRIDES:
+        return measurement.with_attention(f"It rests on {measurement.n} only.")
+    return measurement
+
+
+def of_both(left: Measurement, right: Measurement) -> Measurement:
+    """Mean of the two sides, each side counting alike; not determinable where one of them is not."""
+    definition = left.definition
+    for one, side in ((left, Side.LEFT), (right, Side.RIGHT)):
+        if one.status is Status.NOT_DETERMINABLE:
+            return not_determinable(
+                definition, MeasuredSide.BOTH, f"The {side} side is not determinable: {one.reason}"
+            )
+    if left.value is None or right.value is None or left.sd is None or right.sd is None:
+        return not_determinable(definition, MeasuredSide.BOTH, "One side has no value.")
+    value = 0.5 * (left.value + right.value)
+    sd = 0.5 * float(np.hypot(left.sd, right.sd))
+    both = measured(definition, MeasuredSide.BOTH, value, sd, left.n + right.n)
+    reasons = dict.fromkeys(one.reason for one in (left, right) if one.status is Status.ATTENTION)
+    if reasons and both.n < 2 * FEW_STRIDES:
+        return both.with_attention(" ".join(reasons))
+    return both

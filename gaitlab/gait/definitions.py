@@ -1,0 +1,235 @@
+"""What each parameter means: one definition for reports, pages, REST and help, with its source."""
+
+from __future__ import annotations
+
+from gaitlab.gait.measurement import Definition
+
+IKIZOGLU = "İkizoğlu et al. 2018, table 1"
+GAITRITE = "GAITRite technical reference WI-02-15"
+OURS = "gaitlab"
+
+GROUPS: dict[str, str] = {
+    "test": "Timed walk",
+    "speed": "Speed and distance",
+    "length": "Lengths",
+    "time": "Times and phases",
+    "course": "Course",
+    "knee": "Knee",
+}
+"""Groups of parameters in the order in which people read them."""
+
+
+def _definition(
+    name: str, label: str, unit: str, group: str, decimals: int, text: str, reference: str = OURS
+) -> Definition:
+    return Definition(name, label, unit, group, text, reference, decimals)
+
+
+WALK_TIME = _definition(
+    "walk_time",
+    "Time over the course",
+    "s",
+    "test",
+    2,
+    "From the first foot off after standing to the instant the leading foot has come the length of the course forward from"
+    " where it stood. The start rule is movement, not the word of command: reaction time is not in it.",
+    "NINDS CDE T25-FW (start: instruction); start rule: gaitlab",
+)
+WALK_SPEED = _definition(
+    "walk_speed",
+    "Speed over the course",
+    "m/s",
+    "test",
+    2,
+    "Length of the course divided by the time over the course; contains the acceleration from standing.",
+)
+COURSE_CHECK = _definition(
+    "course_check",
+    "Straight walk against the course",
+    "%",
+    "test",
+    1,
+    "How far the leading foot came forward on the first straight part, less the course, in % of the course: a check of"
+    " scale where the person stopped at the end of the course. It is shown, never used.",
+)
+STEADY_SPEED = _definition(
+    "steady_speed",
+    "Steady speed",
+    "m/s",
+    "speed",
+    2,
+    "Mean over the steady strides of stride length divided by stride time: straight parts only, without the first and"
+    " the last stride of each.",
+    "Phan-Ba et al. 2012 (static start hides the steady speed)",
+)
+STRIDE_VELOCITY = _definition(
+    "stride_velocity",
+    "Stride velocity",
+    "m/s",
+    "speed",
+    2,
+    "Mean over the straight strides of stride length divided by stride time, first and last strides included.",
+    IKIZOGLU,
+)
+DISTANCE = _definition(
+    "traversed_distance",
+    "Traversed distance",
+    "m",
+    "speed",
+    2,
+    "Sum of the foot's stride lengths over the whole recording, turns included.",
+    IKIZOGLU,
+)
+STRIDE_LENGTH = _definition(
+    "stride_length",
+    "Stride length",
+    "m",
+    "length",
+    3,
+    "Horizontal distance between two successive rests of the same foot; mean of the steady strides.",
+    IKIZOGLU,
+)
+STEP_LENGTH = _definition(
+    "step_length",
+    "Step length",
+    "m",
+    "length",
+    3,
+    "Distance along the line of walking from the other foot's place of rest to this foot's; mean of the steady steps."
+    " It assumes that the feet stood side by side before the walk and walk in the same direction.",
+    GAITRITE,
+)
+STEP_WIDTH = _definition(
+    "step_width",
+    "Step width",
+    "m",
+    "length",
+    3,
+    "Distance across the line of walking between the two feet's places of rest; mean of the steady steps. Sensors on the"
+    " feet do not see each other: it assumes how far apart the feet stood before the walk.",
+    "İkizoğlu et al. 2018, table 1; Rebula et al. 2013 (not directly observable)",
+)
+CADENCE = _definition(
+    "cadence",
+    "Cadence",
+    "steps/min",
+    "time",
+    1,
+    "60 divided by the mean time from one initial contact to the next of the other foot, on straight parts.",
+    IKIZOGLU,
+)
+STRIDE_TIME = _definition(
+    "stride_time",
+    "Stride time",
+    "s",
+    "time",
+    3,
+    "From one initial contact to the next of the same foot; mean of the steady strides.",
+    GAITRITE,
+)
+STEP_TIME = _definition(
+    "step_time",
+    "Step time",
+    "s",
+    "time",
+    3,
+    "From the other foot's initial contact to this foot's; mean of the straight parts.",
+    IKIZOGLU,
+)
+STANCE = _definition(
+    "stance_share",
+    "Stance",
+    "%",
+    "time",
+    1,
+    "From initial contact to foot off, in % of the stride time; mean of the steady strides.",
+    GAITRITE,
+)
+SWING = _definition(
+    "swing_share",
+    "Swing",
+    "%",
+    "time",
+    1,
+    "From foot off to initial contact, in % of the stride time; mean of the steady strides.",
+    GAITRITE,
+)
+DOUBLE_SUPPORT = _definition(
+    "double_support_share",
+    "Double support",
+    "%",
+    "time",
+    1,
+    "Time with both feet on the ground, initial and terminal together, in % of the stride time; mean of the steady strides.",
+    GAITRITE,
+)
+STOP_DURATION = _definition(
+    "stop_duration",
+    "Stop duration",
+    "s",
+    "time",
+    2,
+    "Total time, between the first foot off and the last initial contact, in which both feet rest at once for longer than a"
+    " stop takes to be one (1 s).",
+    IKIZOGLU,
+)
+TURN_DURATION = _definition(
+    "turn_duration",
+    "Turn duration",
+    "s",
+    "course",
+    2,
+    "From the first foot's leaving the ground to turn to the last one's coming to rest after it; mean of the turns.",
+)
+TURN_ANGLE = _definition(
+    "turn_angle",
+    "Turn angle",
+    "deg",
+    "course",
+    0,
+    "Change of the feet's heading over a turn; mean of the turns' sizes.",
+)
+STRAIGHTNESS = _definition(
+    "path_deviation",
+    "Deviation from the straight line",
+    "m",
+    "course",
+    3,
+    "Standard deviation, across the line of walking, of the points midway between the feet on the first straight part; the"
+    " line is the straight one that fits them best, so a constant veer is not in it.",
+    "İkizoğlu et al. 2018, §3.2 (linearity of the walk); line: gaitlab",
+)
+CLOSING_ERROR = _definition(
+    "closing_distance",
+    "Start to end",
+    "m",
+    "course",
+    2,
+    "Horizontal distance between the foot's first and last place of rest. Where the walk ends where it began it is an error"
+    " of the path; else it is the way.",
+)
+KNEE_SWAY = _definition(
+    "knee_sway",
+    "Knee sway in stance",
+    "m",
+    "knee",
+    3,
+    "Standard deviation of the knee's movement across the line of walking while its foot rests, its straight drift over the"
+    " rest taken out; root mean square over the rests on straight parts.",
+    "İkizoğlu et al. 2018, §5 (sway of the legs); formula: gaitlab",
+)
+KNEE_RESIDUAL = _definition(
+    "knee_residual",
+    "Knee correction",
+    "m",
+    "knee",
+    3,
+    "Root mean square of the distance by which the knee, uncorrected, misses its foot's step length in a gait cycle: what"
+    " the correction took away.",
+    "İkizoğlu et al. 2018, §3.3",
+)
+
+DEFINITIONS: tuple[Definition, ...] = tuple(
+    value for value in list(globals().values()) if isinstance(value, Definition)
+)
+"""All of them, in the order of this page."""

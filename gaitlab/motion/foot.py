@@ -1,0 +1,152 @@
+"""How a foot moved: orientation, free acceleration, offset, rests, velocity reset, path."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from gaitlab.motion import ikizoglu2018
+from gaitlab.motion.integration import displacement_sd, integrate, reset_at_rests
+from gaitlab.motion.model import FootMotion, Motion, Offsets, Rests
+from gaitlab.motion.offset import STANDARD_GRAVITY_MPS2, find_offsets
+from gaitlab.motion.orientation import OrientationSource, estimate
+from gaitlab.motion.quaternions import conjugate, multiply, rotate, twist_about_vertical
+from gaitlab.motion.rest import find_rests
+from gaitlab.motion.signals import signals_of
+from gaitlab.recording.model import Bools, Floats, Sensor
+
+
+@dataclass(frozen=True)
+class StrideEvidence:
+    """What tells a movement of the foot from a fidget.
+
+    Two rests between which the foot went less than ``min_length_m`` and turned less than ``min_turn_rad`` are one rest:
+    half a sensor's length, and what a standing person's sway turns a foot.
+    """
+
+    min_length_m: float = 0.04
+    min_turn_rad: float = 0.15
+
+
+def free_motion(sensor: Sensor, time_s: Floats, source: OrientationSource | None = None) -> Motion:
+    """Movement of any sensor up to its uncorrected integrals: orientation, offsets, free acceleration.
+
+    ``source`` None takes VQF where the file has a gyroscope, else the device's orientation.
+    """
+    signals = signals_of(sensor)
+    offsets = find_offsets(sensor, signals.acc_mps2, signals.gyr_radps)
+    acc = signals.acc_mps2 - np.array(offsets.acc_mps2)
+    gyr = signals.gyr_radps - np.array(offsets.gyr_radps)
+    device = source is OrientationSource.DEVICE or (source is None and signals.gyr_derived)
+    if device and sensor.attitude is not None:
+        attitude = sensor.attitude
+    else:
+        attitude = estimate(acc, gyr, sensor.rate_hz)
+    acceleration = remove_gravity(rotate(attitude, acc), offsets)
+    velocity = integrate(acceleration, sensor.rate_hz)
+    position = integrate(velocity, sensor.rate_hz)
+    return Motion(
+        sensor.placement,
+        sensor.rate_hz,
+        time_s,
+        sensor.received,
+        sensor.saturated,
+        attitude,
+        rotate(attitude, gyr),
+        acceleration,
+        velocity,
+        position,
+        velocity,
+        position,
+        offsets,
+    )
+
+
+def remove_gravity(force: Floats, offsets: Offsets) -> Floats:
+    """Free acceleration from specific force in world axes, shape (n, 3): without gravity and without its static offset.
+
+    What is left while standing is a tilt of the orientation by a fraction of a degree; its mean is subtracted
+    (İkizoğlu et al. 2018, §3.2).
+    """
+    acceleration: Floats = force - np.array([0.0, 0.0, STANDARD_GRAVITY_MPS2])
+    if offsets.standing:
+        acceleration -= acceleration[offsets.start : offsets.end].mean(axis=0)
+    return acceleration
+
+
+def track_foot(
+    sensor: Sensor, time_s: Floats, method: str = "gaitlab", source: OrientationSource | None = None
+) -> FootMotion:
+    """Reconstruct how a foot moved.
+
+    Parameters
+    ----------
+    sensor : Sensor
+        Of a foot.
+    time_s : ndarray (n,)
+        Times of its rows.
+    method : str
+        ``gaitlab``, or ``ikizoglu2018`` for the paper to the letter.
+    source : OrientationSource or None
+        Where the orientation comes from; None lets the data decide.
+    """
+    if method == "ikizoglu2018":
+        free = ikizoglu2018.free_motion(sensor, free_motion(sensor, time_s, source))
+        rests = ikizoglu2018.find_rests(free.acceleration_mps2, free.rate_hz)
+        velocity, rests = ikizoglu2018.reset_at_rests(free.acceleration_mps2, rests, free.rate_hz)
+    else:
+        free = free_motion(sensor, time_s, source)
+        found = find_rests(free.acceleration_mps2, free.rate_radps, free.rate_hz)
+        velocity, rests = reset_at_rests(free.raw_velocity_mps, found)
+        keep = _moved_before(free, rests, integrate(velocity, free.rate_hz))
+        if not keep.all():
+            velocity, rests = reset_at_rests(free.raw_velocity_mps, _joined(found, keep))
+    position = integrate(velocity, free.rate_hz)
+    return _foot_motion(free, velocity, position, rests)
+
+
+def heading_change(motion: Motion, rests: Rests) -> Floats:
+    """Turn of a foot about the vertical from each rest to the next, radians, positive to the left, shape (k − 1,).
+
+    Taken from the two orientations; the integrated angular rate decides between a turn and its complement to 360°.
+    """
+    stance = motion.attitude[rests.moment]
+    turn = twist_about_vertical(multiply(stance[1:], conjugate(stance[:-1])))
+    swept = np.concatenate([[0.0], np.cumsum(motion.rate_radps[:, 2])]) / motion.rate_hz
+    swept = np.diff(swept[rests.moment])
+    change: Floats = turn + 2.0 * np.pi * np.round((swept - turn) / (2.0 * np.pi))
+    return change
+
+
+def _moved_before(
+    free: Motion, rests: Rests, position: Floats, evidence: StrideEvidence | None = None
+) -> Bools:
+    """True for each rest before which the foot moved away from the rest before it (the first counts as moved)."""
+    limits = evidence or StrideEvidence()
+    if not len(rests):
+        return np.zeros(0, dtype=np.bool_)
+    length = np.linalg.norm(np.diff(position[rests.moment], axis=0), axis=1)
+    turn = np.abs(heading_change(free, rests))
+    return np.concatenate([[True], (length >= limits.min_length_m) | (turn >= limits.min_turn_rad)])
+
+
+def _joined(rests: Rests, moved: Bools) -> Rests:
+    """Join each rest that is not a new one to the rest before it."""
+    first = np.flatnonzero(moved)
+    last = np.append(first[1:], len(rests)) - 1
+    return Rests(rests.start[first], rests.end[last], rests.moment[first], rests.residual_mps[first])
+
+
+def _foot_motion(free: Motion, velocity: Floats, position: Floats, rests: Rests) -> FootMotion:
+    doubtful = np.concatenate([[0], np.cumsum(~free.received | free.saturated)])
+    if len(rests) > 1:
+        a, b = rests.moment[:-1], rests.moment[1:]
+        share = (doubtful[b] - doubtful[a]) / np.maximum(b - a, 1)
+        length = np.linalg.norm(np.diff(position[rests.moment], axis=0)[:, :2], axis=1)
+        gravity_error = abs(free.offsets.gravity_mps2 / STANDARD_GRAVITY_MPS2 - 1.0)
+        sd = displacement_sd(rests, free.rate_hz, gravity_error, length, share)
+    else:
+        sd = np.zeros(0)
+    kept = vars(free) | {"velocity_mps": velocity, "position_m": position}
+    return FootMotion(**kept, rests=rests, displacement_sd_m=sd)

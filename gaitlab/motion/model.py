@@ -1,0 +1,169 @@
+"""What the motion stages hand on: offsets, rests, and how a foot or a knee moved.
+
+World frame: z up. Until ``frame.py`` has turned it, its heading is that of the orientation estimate, which is arbitrary.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitlab.motion.quaternions import heading_rotation, multiply
+from gaitlab.recording.model import Bools, Floats, Placement
+
+Indices = NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class Offsets:
+    """Static offsets of one sensor, found while the person stood.
+
+    Attributes
+    ----------
+    start, end : int
+        Rows of the standing second, ``[start, end)``; both 0 where none was found.
+    acc_mps2, gyr_radps : tuple of 3 floats
+        Subtracted from the sensor's readings, sensor frame.
+    standing : bool
+        False where nobody stood still for a second; the offsets are then the best that is known.
+    gravity_mps2 : float
+        Size of the specific force while standing, before any correction.
+    """
+
+    start: int
+    end: int
+    acc_mps2: tuple[float, float, float]
+    gyr_radps: tuple[float, float, float]
+    standing: bool
+    gravity_mps2: float
+
+
+@dataclass(frozen=True, eq=False)
+class Rests:
+    """Intervals ``[start, end)`` of rows in which a foot rests, in order of time.
+
+    Attributes
+    ----------
+    start, end, moment : ndarray (k,)
+        First row, row after the last, and the quietest row of each rest.
+    residual_mps : ndarray (k, 3)
+        Velocity, drift since the rest before it included, that the reset took away at ``moment``.
+    """
+
+    start: Indices
+    end: Indices
+    moment: Indices
+    residual_mps: Floats
+
+    def __len__(self) -> int:
+        return len(self.start)
+
+    def mask(self, n: int) -> Bools:
+        """True in every rest, shape (n,)."""
+        edges = np.zeros(n + 1, dtype=np.int64)
+        np.add.at(edges, self.start, 1)
+        np.add.at(edges, self.end, -1)
+        return np.cumsum(edges)[:n] > 0
+
+    def at(self, keep: Bools | Indices) -> Rests:
+        """The chosen rests."""
+        return Rests(self.start[keep], self.end[keep], self.moment[keep], self.residual_mps[keep])
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """How one sensor moved, row by row, in the world frame.
+
+    Attributes
+    ----------
+    time_s : ndarray (n,)
+        Seconds since the recording's first packet.
+    attitude : ndarray (n, 4)
+        Sensor to world, scalar first.
+    rate_radps : ndarray (n, 3)
+        Angular rate, offset removed, world axes.
+    acceleration_mps2 : ndarray (n, 3)
+        Free acceleration, offset removed.
+    raw_velocity_mps, raw_position_m : ndarray (n, 3)
+        Its integrals without any reset.
+    velocity_mps, position_m : ndarray (n, 3)
+        Corrected.
+    """
+
+    placement: Placement
+    rate_hz: float
+    time_s: Floats
+    received: Bools
+    saturated: Bools
+    attitude: Floats
+    rate_radps: Floats
+    acceleration_mps2: Floats
+    raw_velocity_mps: Floats
+    raw_position_m: Floats
+    velocity_mps: Floats
+    position_m: Floats
+    offsets: Offsets
+
+    @property
+    def n_samples(self) -> int:
+        return len(self.time_s)
+
+    def turned(self, yaw_rad: float) -> Self:
+        """The same movement seen from a world turned about the vertical by ``yaw_rad`` (positive to the left)."""
+        matrix = heading_rotation(yaw_rad)
+        turn = np.array([np.cos(yaw_rad / 2), 0.0, 0.0, np.sin(yaw_rad / 2)])
+        vectors = (
+            "rate_radps",
+            "acceleration_mps2",
+            "raw_velocity_mps",
+            "raw_position_m",
+            "velocity_mps",
+            "position_m",
+        )
+        changed: dict[str, Any] = {name: getattr(self, name) @ matrix.T for name in vectors}
+        return replace(self, attitude=multiply(turn, self.attitude), **changed)
+
+    def moved(self, shift_m: Floats) -> Self:
+        """The same movement with its path shifted, shape (3,)."""
+        return replace(self, position_m=self.position_m + shift_m)
+
+
+@dataclass(frozen=True, eq=False)
+class FootMotion(Motion):
+    """A foot: its rests are where its velocity is known.
+
+    ``displacement_sd_m`` (k − 1,) is the standard uncertainty of the horizontal displacement from each rest to the next.
+    """
+
+    rests: Rests
+    displacement_sd_m: Floats
+
+    def turned(self, yaw_rad: float) -> Self:
+        """As ``Motion.turned``; the residual velocities turn with it."""
+        residual = self.rests.residual_mps @ heading_rotation(yaw_rad).T
+        return replace(super().turned(yaw_rad), rests=replace(self.rests, residual_mps=residual))
+
+    @property
+    def rest_position_m(self) -> Floats:
+        """Where the foot stands at each rest, shape (k, 3)."""
+        return self.position_m[self.rests.moment]
+
+
+@dataclass(frozen=True, eq=False)
+class KneeMotion(Motion):
+    """A knee: it never rests, so its path is tied to its foot's in every gait cycle.
+
+    Attributes
+    ----------
+    cycle_start, cycle_end : ndarray (m,)
+        Rows between which each cycle ran: from the foot's leaving one rest to its leaving the next.
+    residual_m : ndarray (m,)
+        Horizontal distance between the knee's uncorrected displacement in the cycle and the foot's.
+    """
+
+    cycle_start: Indices
+    cycle_end: Indices
+    residual_m: Floats

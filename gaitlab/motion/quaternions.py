@@ -1,0 +1,61 @@
+"""The little quaternion algebra that motion needs: scalar first, sensor to world, vectorised over rows."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gaitlab.recording.model import Floats
+
+
+def multiply(p: Floats, q: Floats) -> Floats:
+    """Hamilton product p ⊗ q, shapes (..., 4): the rotation q first, then p."""
+    pw, px, py, pz = np.moveaxis(p, -1, 0)
+    qw, qx, qy, qz = np.moveaxis(q, -1, 0)
+    product: Floats = np.stack(
+        [
+            pw * qw - px * qx - py * qy - pz * qz,
+            pw * qx + px * qw + py * qz - pz * qy,
+            pw * qy - px * qz + py * qw + pz * qx,
+            pw * qz + px * qy - py * qx + pz * qw,
+        ],
+        axis=-1,
+    )
+    return product
+
+
+def conjugate(q: Floats) -> Floats:
+    """The inverse rotation of unit quaternions, shape (..., 4)."""
+    return q * np.array([1.0, -1.0, -1.0, -1.0])
+
+
+def rotate(q: Floats, v: Floats) -> Floats:
+    """Turn vectors v, shape (n, 3), by unit quaternions q, shape (n, 4) or (4,)."""
+    w, u = q[..., :1], q[..., 1:]
+    t = 2.0 * np.cross(u, v)
+    result: Floats = v + w * t + np.cross(u, t)
+    return result
+
+
+def heading_rotation(yaw_rad: float) -> Floats:
+    """Matrix, shape (3, 3), that turns about the vertical by ``yaw_rad``, positive to the left seen from above."""
+    c, s = np.cos(yaw_rad), np.sin(yaw_rad)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def twist_about_vertical(q: Floats) -> Floats:
+    """Heading part of each rotation in radians, shape (n,): the turn about the vertical in the swing-twist decomposition.
+
+    Unlike a yaw angle it has no singularity at ±90° of pitch, as a sensor on the back of a foot stands.
+    """
+    return 2.0 * np.arctan2(q[..., 3], q[..., 0])
+
+
+def angular_rate(q: Floats, rate_hz: float) -> Floats:
+    """Angular rate in the sensor frame, rad/s, shape (n, 3), from successive orientations; row i is the mean over (i − 1, i]."""
+    step = multiply(conjugate(q[:-1]), q[1:])
+    step = step * np.where(step[:, :1] < 0, -1.0, 1.0)
+    length = np.linalg.norm(step[:, 1:], axis=1)
+    angle = 2.0 * np.arctan2(length, step[:, 0])
+    scale = np.divide(angle, length, out=np.full_like(angle, 2.0), where=length > 1e-12)
+    rates = step[:, 1:] * scale[:, None] * rate_hz
+    return np.vstack([rates[:1], rates]) if len(rates) else np.zeros((len(q), 3))

@@ -1,0 +1,203 @@
+"""Rests of a foot: one in every gait cycle, whatever the pace, the size of the movement or the sensor's mounting."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.fft import irfft, next_fast_len, rfft
+from scipy.ndimage import uniform_filter1d
+from scipy.signal import find_peaks
+
+from gaitlab.motion.model import Rests
+from gaitlab.recording.model import Floats
+
+
+@dataclass(frozen=True)
+class RestParams:
+    """Tuning of ``find_rests``; every number is a share of what the recording itself shows, so it fits no one group.
+
+    Tuned on ``mtw-10m-walk`` (46 trials, 1,523 hand-checked stances).
+
+    Attributes
+    ----------
+    window_cycles : float
+        Length of the moving RMS, as a share of the gait cycle.
+    floor : float
+        Unrest below this share of a typical swing's is equally quiet.
+    prominence : float
+        A rest is quieter than what lies on either side of it by at least this factor.
+    swing : float
+        Between two rests the unrest reaches at least this share of a typical swing's; else the two are one rest.
+    rim : float
+        A rest reaches as far as the unrest stays below ``rim`` times its least value (or times the floor).
+    cycle_range_s : tuple of float
+        Shortest and longest gait cycle looked for.
+    default_cycle_s : float
+        Gait cycle assumed where the signal has no period.
+    min_swing_rate_radps : float
+        Below this typical peak of the angular rate nothing is a swing: nobody walks. A shuffling foot reaches 1 rad/s.
+    """
+
+    window_cycles: float = 0.15
+    floor: float = 0.05
+    prominence: float = 3.0
+    swing: float = 0.15
+    rim: float = 2.0
+    cycle_range_s: tuple[float, float] = (0.5, 3.0)
+    default_cycle_s: float = 1.1
+    min_swing_rate_radps: float = 0.5
+
+
+def _moving_rms(values: Floats, width: int) -> Floats:
+    squares = uniform_filter1d(np.einsum("ij,ij->i", values, values), width, mode="nearest")
+    rms: Floats = np.sqrt(np.maximum(squares, 0.0))
+    return rms
+
+
+def cycle_time(rate_radps: Floats, rate_hz: float, params: RestParams | None = None) -> float | None:
+    """Duration of the gait cycle in seconds from the autocorrelation of the size of the angular rate, shape (n, 3).
+
+    None where it has no period, as when nobody walks.
+    """
+    p = params or RestParams()
+    size = uniform_filter1d(np.linalg.norm(rate_radps, axis=1), max(1, round(0.05 * rate_hz)))
+    activity = uniform_filter1d(size, max(1, round(rate_hz)))
+    active = activity > 0.3 * np.percentile(activity, 95)
+    signal = np.where(active, size - size[active].mean() if active.any() else 0.0, 0.0)
+    longest = min(len(signal) - 1, round(p.cycle_range_s[1] * rate_hz))
+    shortest = round(p.cycle_range_s[0] * rate_hz)
+    if longest <= shortest + 2:
+        return None
+    n_fft = next_fast_len(len(signal) + longest)
+    spectrum = rfft(signal, n_fft)
+    correlation = irfft(np.abs(spectrum) ** 2, n_fft)[: longest + 1]
+    if correlation[0] <= 0:
+        return None
+    correlation = correlation / correlation[0] / (1.0 - np.arange(longest + 1) / len(signal))
+    peaks, _ = find_peaks(correlation[shortest:], prominence=0.05)
+    if not len(peaks):
+        return None
+    peaks = peaks + shortest
+    if correlation[peaks].max() <= 0:
+        return None
+    high = peaks[correlation[peaks] >= 0.8 * correlation[peaks].max()]
+    return float(high[0] / rate_hz)
+
+
+def _typical_swing(unrest: Floats, distance: int) -> float:
+    peaks, _ = find_peaks(unrest, distance=distance, height=0.3 * np.percentile(unrest, 98))
+    return float(np.median(unrest[peaks])) if len(peaks) else float(unrest.max(initial=0.0))
+
+
+def unrest(
+    acceleration_mps2: Floats, rate_radps: Floats, rate_hz: float, params: RestParams | None = None
+) -> Floats | None:
+    """How far each row is from rest: about 1 in a typical swing, ``floor`` when still; None where nobody walks.
+
+    u = √(½·(W/W̃)² + ½·(A/Ã)² + floor²), W and A the moving RMS of angular rate and free acceleration over a share of the
+    gait cycle, W̃ and Ã their medians over the swings' peaks.
+    """
+    p = params or RestParams()
+    cycle = cycle_time(rate_radps, rate_hz, p) or p.default_cycle_s
+    width = max(3, round(p.window_cycles * cycle * rate_hz))
+    distance = max(1, round(0.6 * cycle * rate_hz))
+    turning, moving = _moving_rms(rate_radps, width), _moving_rms(acceleration_mps2, width)
+    typical_turning, typical_moving = _typical_swing(turning, distance), _typical_swing(moving, distance)
+    if typical_turning < p.min_swing_rate_radps or typical_moving <= 0:
+        return None
+    level: Floats = np.sqrt(
+        0.5 * (turning / typical_turning) ** 2 + 0.5 * (moving / typical_moving) ** 2 + p.floor**2
+    )
+    return level
+
+
+@dataclass(frozen=True)
+class _Valley:
+    """Valleys of the unrest with no swing between them: one rest. Rows of the first, the last and the deepest."""
+
+    first: int
+    last: int
+    moment: int
+
+
+def _one_per_cycle(level: Floats, params: RestParams) -> list[_Valley]:
+    """Valleys of the unrest, one between every two swings."""
+    edge = np.log(params.prominence) + 10.0
+    quiet = np.concatenate([[-edge], -np.log(level), [-edge]])
+    candidates, _ = find_peaks(quiet, prominence=np.log(params.prominence))
+    kept: list[_Valley] = []
+    for row in (int(c) - 1 for c in candidates):
+        if kept and level[kept[-1].last : row].max() < params.swing:
+            one = kept[-1]
+            deepest = row if level[row] < level[one.moment] else one.moment
+            kept[-1] = _Valley(one.first, row, deepest)
+        else:
+            kept.append(_Valley(row, row, row))
+    return kept
+
+
+def _extent(level: Floats, valley: _Valley, low: int, high: int, params: RestParams) -> tuple[int, int]:
+    """Rows ``[start, end)`` within ``[low, high)`` around a valley in which the unrest stays low."""
+    limit = params.rim * max(float(level[valley.moment]), params.floor)
+    over = np.flatnonzero(level[low : valley.first + 1] > limit)
+    start = low + int(over[-1]) + 1 if len(over) else low
+    over = np.flatnonzero(level[valley.last : high] > limit)
+    end = valley.last + int(over[0]) if len(over) else high
+    return min(start, valley.first), max(end, valley.last + 1)
+
+
+def find_rests(
+    acceleration_mps2: Floats, rate_radps: Floats, rate_hz: float, params: RestParams | None = None
+) -> Rests:
+    """Find the rests of a foot from its free acceleration and angular rate, both shape (n, 3), any axes.
+
+    Every gait cycle has one quietest moment: it is found as a valley of the unrest that is deep against both its
+    neighbours, and the rest is the stretch around it that is nearly as quiet. Two valleys without a swing between them are
+    one rest. Residual velocities are zero here; the velocity stage fills them in.
+
+    Ours. It replaces İkizoğlu et al. 2018, §3.3 (``ikizoglu2018.find_rests``), which finds 5 % of the stances in
+    ``mtw-10m-walk``.
+    """
+    p = params or RestParams()
+    level = unrest(acceleration_mps2, rate_radps, rate_hz, p)
+    if level is None:
+        return no_rests()
+    valleys = _one_per_cycle(level, p)
+    borders = [0, *((a.last + b.first) // 2 for a, b in itertools.pairwise(valleys)), len(level)]
+    extents = [
+        _extent(level, valley, low, high, p)
+        for valley, (low, high) in zip(valleys, itertools.pairwise(borders), strict=True)
+    ]
+    start = np.array([e[0] for e in extents], dtype=np.intp)
+    end = np.array([e[1] for e in extents], dtype=np.intp)
+    moment = np.array([v.moment for v in valleys], dtype=np.intp)
+    return Rests(start, end, moment, np.zeros((len(moment), 3)))
+
+
+def no_rests() -> Rests:
+    """No rest at all."""
+    none = np.array([], dtype=np.intp)
+    return Rests(none, none, none, np.zeros((0, 3)))
+
+
+def restlessness(
+    acceleration_mps2: Floats, rate_radps: Floats, rate_hz: float, params: RestParams | None = None
+) -> float | None:
+    """Median over the gait cycles of the least unrest in each: how near to rest a sensor ever comes; None where nobody walks.
+
+    0.05 to 0.10 for the 92 feet of ``mtw-10m-walk`` (0.05 is the floor), 0.14 and more for shanks, ankles and thighs in
+    ``mtw-leg-vicon``.
+    """
+    p = params or RestParams()
+    level = unrest(acceleration_mps2, rate_radps, rate_hz, p)
+    if level is None:
+        return None
+    cycle = max(3, round((cycle_time(rate_radps, rate_hz, p) or p.default_cycle_s) * rate_hz))
+    active = np.flatnonzero(level > 0.3)
+    if not len(active) or active[-1] - active[0] < cycle:
+        return None
+    walk = level[active[0] : active[-1] + 1]
+    whole = len(walk) // cycle * cycle
+    return float(np.median(walk[:whole].reshape(-1, cycle).min(axis=1)))

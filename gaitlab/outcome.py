@@ -1,0 +1,156 @@
+"""Put what was reconstructed into the form in which it is stored and sent."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from gaitlab import __version__, result
+from gaitlab.gait.course import START_RULE, TimedCourse
+from gaitlab.gait.knees import KneeGait
+from gaitlab.gait.lengths import distance_of
+from gaitlab.gait.measurement import Measurement
+from gaitlab.gait.model import Gait
+from gaitlab.gait.strides import FootGait
+from gaitlab.recording.model import Recording
+from gaitlab.settings import Settings
+
+
+def result_of(recording: Recording, settings: Settings, gait: Gait) -> result.Result:
+    """The result of an analysis, numbers rounded to what the interface promises (10 µs, 10 µm)."""
+    chosen = settings.as_dict()
+    inputs = tuple(
+        result.Input(placement=placement, name=sensor.source.name, sha256=sensor.source.sha256)
+        for placement, sensor in recording.sensors.items()
+    )
+    return result.Result(
+        provenance=result.Provenance(
+            gaitlab=__version__,
+            method=settings.method,
+            settings=chosen,
+            settings_sha256=result.settings_sha256(chosen),
+            inputs=inputs,
+        ),
+        clock=result.Clock(rate_hz=recording.rate_hz, first_packet=recording.first_packet),
+        sensors={
+            placement.value: result.SensorQuality(
+                samples=sensor.n_samples,
+                lost=sensor.n_lost,
+                saturated=sensor.n_saturated,
+                device=sensor.device,
+            )
+            for placement, sensor in recording.sensors.items()
+        },
+        feet={side.value: _foot(foot) for side, foot in gait.feet.items()},
+        knees={side.value: _knee(knee) for side, knee in gait.knees.items()},
+        walk=_walk(gait),
+        parameters=tuple(_parameter(one) for one in gait.parameters),
+        warnings=tuple(
+            result.ResultWarning(code=one.code, message=one.message, placement=one.placement)
+            for one in gait.findings
+        ),
+    )
+
+
+def _r(value: float | np.floating[Any]) -> float:
+    return round(float(value), 5)
+
+
+def _foot(foot: FootGait) -> result.Foot:
+    rests, times = foot.motion.rests, foot.motion.time_s
+    period = 1.0 / foot.motion.rate_hz
+    speed = np.linalg.norm(rests.residual_mps, axis=1)
+    distance, distance_sd = distance_of(foot)
+    walking = foot.walking
+    return result.Foot(
+        rests=tuple(
+            result.Rest(start_s=_r(times[a]), end_s=_r(times[b - 1] + period), residual_velocity_mps=_r(v))
+            for a, b, v in zip(rests.start, rests.end, speed, strict=True)
+        ),
+        events=result.Events(
+            foot_off_s=tuple(_r(t) for t in foot.events.foot_off_s[walking]),
+            initial_contact_s=tuple(_r(t) for t in foot.events.initial_contact_s[walking]),
+        ),
+        strides=tuple(
+            result.Stride(
+                start_s=_r(foot.start_s[k]),
+                end_s=_r(foot.end_s[k]),
+                length_m=_r(foot.length_m[k]),
+                length_sd_m=_r(foot.length_sd_m[k]),
+                duration_s=_r(foot.end_s[k] - foot.start_s[k]),
+                speed_mps=_r(foot.length_m[k] / (foot.end_s[k] - foot.start_s[k])),
+                turning=bool(foot.turning[k]),
+            )
+            for k in np.flatnonzero(walking)
+        ),
+        distance_m=_r(distance),
+        distance_sd_m=_r(distance_sd),
+    )
+
+
+def _knee(knee: KneeGait) -> result.Knee:
+    motion = knee.motion
+    n = len(knee.sway_sd_m)
+    steps = motion.position_m[motion.cycle_end] - motion.position_m[motion.cycle_start]
+    return result.Knee(
+        strides=tuple(
+            result.KneeStride(
+                start_s=_r(motion.time_s[a]),
+                end_s=_r(motion.time_s[b]),
+                length_m=_r(np.hypot(step[0], step[1])),
+                residual_m=_r(residual),
+            )
+            for a, b, step, residual in zip(
+                motion.cycle_start, motion.cycle_end, steps, motion.residual_m, strict=True
+            )
+        ),
+        sway=result.KneeSway(
+            lateral_sd_m=_r(np.sqrt(np.mean(knee.sway_sd_m**2))) if n else None,
+            lateral_range_m=_r(np.mean(knee.sway_range_m)) if n else None,
+            n=n,
+        ),
+    )
+
+
+def _walk(gait: Gait) -> result.Walk:
+    closing = {}
+    for side, foot in gait.feet.items():
+        places = foot.motion.rest_position_m
+        closing[side.value] = _r(np.linalg.norm((places[-1] - places[0])[:2])) if len(places) else 0.0
+    timed = gait.timed
+    return result.Walk(
+        straights=tuple(result.Interval(start_s=_r(a), end_s=_r(b)) for a, b in gait.course.straights),
+        turns=tuple(
+            result.Turn(
+                start_s=_r(t.start_s), end_s=_r(t.end_s), angle_deg=round(float(np.degrees(t.angle_rad)), 2)
+            )
+            for t in gait.course.turns
+        ),
+        closing_error_m=closing,
+        timed=result.TimedWalk(
+            course_m=timed.course_m, start_s=_r(timed.start_s), end_s=_r(timed.end_s), rule=START_RULE
+        )
+        if isinstance(timed, TimedCourse)
+        else None,
+    )
+
+
+def _parameter(one: Measurement) -> result.Parameter:
+    definition, ci = one.definition, one.ci95
+    return result.Parameter(
+        name=definition.name,
+        side=one.side.value,
+        unit=definition.unit,
+        value=None if one.value is None else _r(one.value),
+        sd=None if one.sd is None else _r(one.sd),
+        ci95=None if ci is None else (_r(ci[0]), _r(ci[1])),
+        n=one.n,
+        status=one.status.value,
+        reason=one.reason,
+        definition=definition.text,
+        label=definition.label,
+        group=definition.group,
+        reference=definition.reference,
+        decimals=definition.decimals,
+    )

@@ -1,0 +1,188 @@
+"""What a reader of a result should know about the data behind it, and what stops an analysis."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from gaitlab.errors import InputError
+from gaitlab.gait.knees import KneeGait
+from gaitlab.gait.measurement import Measurement
+from gaitlab.gait.strides import FootGait
+from gaitlab.motion.model import FootMotion, KneeMotion, Motion
+from gaitlab.motion.offset import STANDARD_GRAVITY_MPS2
+from gaitlab.motion.rest import restlessness
+from gaitlab.recording.model import Finding, Placement, Recording, Side
+
+
+@dataclass(frozen=True)
+class QualityParams:
+    """When data want attention.
+
+    Attributes
+    ----------
+    min_duration_s : float
+        A shorter recording holds no gait cycle.
+    swap_ratio, swap_min : float
+        Foot and knee are swapped where the "foot" is at least so much more restless than the "knee", and restless at all;
+        see ``restlessness``.
+    restless_foot : float
+        A foot above this does not come to rest as feet do.
+    lost_share : float
+        Share of lost samples from which lengths want attention.
+    gravity_share : float
+        Gravity read wrong by more than this share.
+    residual_mps : float
+        Median residual velocity at the rests above which the path wants attention.
+    """
+
+    min_duration_s: float = 1.0
+    swap_ratio: float = 1.5
+    swap_min: float = 0.11
+    restless_foot: float = 0.13
+    lost_share: float = 0.10
+    gravity_share: float = 0.06
+    residual_mps: float = 0.5
+
+
+PARAMS = QualityParams()
+RESERVES: dict[str, tuple[tuple[str, ...], str]] = {
+    "no_standing": (
+        ("speed", "length", "test", "course", "knee"),
+        "Nobody stood still, so the sensors' offsets are less certain.",
+    ),
+    "many_lost": (("speed", "length", "course", "knee"), "Many samples were lost."),
+    "restless_foot": (("speed", "length", "time", "course", "test"), "The foot hardly comes to rest."),
+    "large_residual": (("speed", "length", "course"), "The path drifted much between rests."),
+}
+"""Finding → groups of parameters that want attention for it, and the reason."""
+
+
+def check_length(recording: Recording) -> None:
+    """Refuse a recording in which some sensor has less than a second."""
+    for sensor in recording.sensors.values():
+        if sensor.n_samples < max(PARAMS.min_duration_s * sensor.rate_hz, 20):
+            noun = "sample" if sensor.n_samples == 1 else "samples"
+            raise InputError(
+                "too_short",
+                f"The {sensor.placement.label} has {sensor.n_samples} {noun}, which is less than a second.",
+                "Upload the whole recording of a walk.",
+                file=sensor.source.name,
+            )
+
+
+def check_placements(feet: Mapping[Side, FootMotion], knees: Mapping[Side, KneeMotion]) -> None:
+    """Refuse a recording in which foot and knee of a side are swapped: the foot rests in every cycle, the knee never does."""
+    for side in knees:
+        foot, knee = _restlessness(feet[side]), _restlessness(knees[side])
+        if foot is None or knee is None:
+            continue
+        if foot > PARAMS.swap_min and foot > PARAMS.swap_ratio * knee:
+            raise InputError(
+                "placement_swapped",
+                f"The {side} foot and the {side} knee seem to be swapped: the sensor given as the knee comes to rest in"
+                " every gait cycle, the one given as the foot does not.",
+                f"Exchange the files of {Placement.foot(side).label} and {Placement.knee(side).label}.",
+            )
+
+
+def _restlessness(motion: Motion) -> float | None:
+    return restlessness(motion.acceleration_mps2, motion.rate_radps, motion.rate_hz)
+
+
+def findings(
+    recording: Recording, feet: Mapping[Side, FootGait], knees: Mapping[Side, KneeGait]
+) -> list[Finding]:
+    """What to know about the data, in words; placements in their usual order."""
+    found: list[Finding] = []
+    for side in Side:
+        if side not in feet:
+            found.append(
+                Finding(
+                    "one_foot",
+                    f"The {side} foot was not recorded: whatever joins the two feet is not determinable.",
+                    Placement.foot(side),
+                )
+            )
+    for side, foot in feet.items():
+        found += _of_foot(Placement.foot(side), foot)
+    for side, knee in knees.items():
+        found += _of_sensor(Placement.knee(side), knee.motion)
+    for placement in recording.sensors:
+        if not placement.is_foot and placement.side not in feet:
+            message = (
+                f"The {placement.label} was left out: without its foot there is nothing to correct it by."
+            )
+            found.append(Finding("knee_without_foot", message, placement))
+    if not any(foot.walking.any() for foot in feet.values()):
+        found.append(Finding("no_walking", "Nobody walks in this recording: no stride was found.", None))
+    return found
+
+
+def _of_sensor(placement: Placement, motion: Motion) -> list[Finding]:
+    found = []
+    offsets = motion.offsets
+    if not offsets.standing:
+        message = (
+            f"The {placement.label} never stands still for a second: the gyroscope's offset is left to the orientation"
+            " filter and the accelerometer's comes from the quietest second."
+        )
+        found.append(Finding("no_standing", message, placement))
+    elif offsets.start != round(2.0 * motion.rate_hz):
+        at = motion.time_s[offsets.start]
+        message = f"The {placement.label} does not stand from 2 s to 3 s; its offsets come from the second at {at:.1f} s."
+        found.append(Finding("standing_elsewhere", message, placement))
+    error = offsets.gravity_mps2 / STANDARD_GRAVITY_MPS2 - 1.0
+    if offsets.standing and abs(error) > PARAMS.gravity_share:
+        message = (
+            f"The {placement.label} reads {offsets.gravity_mps2:.2f} m/s² while standing, {100 * error:+.0f} % off gravity:"
+            " the sensor wants calibrating, and lengths carry that doubt."
+        )
+        found.append(Finding("gravity", message, placement))
+    lost = 1.0 - np.count_nonzero(motion.received) / motion.n_samples
+    if lost > PARAMS.lost_share:
+        message = (
+            f"The {placement.label} lost {100 * lost:.0f} % of its samples: its lengths are less certain."
+        )
+        found.append(Finding("many_lost", message, placement))
+    return found
+
+
+def _of_foot(placement: Placement, foot: FootGait) -> list[Finding]:
+    found = _of_sensor(placement, foot.motion)
+    restless = _restlessness(foot.motion)
+    if restless is not None and restless > PARAMS.restless_foot:
+        message = (
+            f"The {placement.label} hardly comes to rest: the sensor may sit on a shank, or the foot shuffles. Check the"
+            " placement."
+        )
+        found.append(Finding("restless_foot", message, placement))
+    saturated = foot.motion.saturated
+    if saturated.any():
+        moments = foot.motion.rests.moment
+        touched = sum(bool(saturated[a:b].any()) for a, b in zip(moments[:-1], moments[1:], strict=True))
+        message = f"The {placement.label} reached the end of its range in {touched} strides: their lengths are less certain."
+        found.append(Finding("saturated", message, placement))
+    residual = np.linalg.norm(foot.motion.rests.residual_mps[1:], axis=1)
+    if len(residual) and float(np.median(residual)) > PARAMS.residual_mps:
+        message = (
+            f"The {placement.label} drifted by {np.median(residual):.2f} m/s between rests (median): its orientation or its"
+            " offsets are poor."
+        )
+        found.append(Finding("large_residual", message, placement))
+    return found
+
+
+def with_reserve(parameters: Sequence[Measurement], found: Sequence[Finding]) -> tuple[Measurement, ...]:
+    """The parameters, marked where a finding gives reason to use them with reserve."""
+    marked = []
+    for parameter in parameters:
+        for finding in found:
+            groups, reason = RESERVES.get(finding.code, ((), ""))
+            concerned = finding.placement is None or parameter.side in ("both", finding.placement.side)
+            if parameter.definition.group in groups and concerned and reason not in parameter.reason:
+                parameter = parameter.with_attention(reason)
+        marked.append(parameter)
+    return tuple(marked)
