@@ -12,8 +12,9 @@ from gaitlab.recording.samples import Samples
 def align(samples: Mapping[Placement, Samples]) -> dict[Placement, int]:
     """How many packets to add to each sensor's counter so that all run together.
 
-    Sensors of one trial count the same packets but may wrap before their first sample or not; each is moved by the
-    multiple of its modulus that overlaps most with the longest one. The earliest sensor then keeps its own counter.
+    Sensors of one trial count the same packets but may wrap before their first sample or not; each is moved
+    by the multiple of its modulus that overlaps most with the longest one. The earliest sensor then keeps its
+    own counter.
 
     Raises
     ------
@@ -35,8 +36,9 @@ def align(samples: Mapping[Placement, Samples]) -> dict[Placement, int]:
     if moved[latest][0] >= moved[earliest_end][1]:
         raise InputError(
             "no_overlap",
-            f"The recordings do not overlap: {earliest_end.label} ({samples[earliest_end].file.name}) ends at packet "
-            f"{moved[earliest_end][1] - 1}, {latest.label} ({samples[latest].file.name}) begins at {moved[latest][0]}.",
+            f"The recordings do not overlap: {earliest_end.label} ({samples[earliest_end].file.name}) ends at "
+            f"packet {moved[earliest_end][1] - 1}, {latest.label} ({samples[latest].file.name}) begins at "
+            f"{moved[latest][0]}.",
             "Give the files of one and the same trial.",
             file=samples[latest].file.name,
         )

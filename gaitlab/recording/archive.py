@@ -1,8 +1,9 @@
-"""Unpack a zip in memory after checking its table of contents: nothing is believed and nothing touches the disk.
+"""Unpack a zip in memory after checking its table of contents: nothing is believed and nothing touches the
+disk.
 
-Python's ``zipfile`` reads entries that share one local header (CVE-2024-0450) in versions still in use, so the
-checks here do not lean on it: number, declared size, ratio, method, name and place of every entry come first, and
-the bytes are counted while they come out.
+Python's ``zipfile`` reads entries that share one local header (CVE-2024-0450) in versions still in use, so
+the checks here do not lean on it: number, declared size, ratio, method, name and place of every entry come
+first, and the bytes are counted while they come out.
 """
 
 from __future__ import annotations
@@ -117,7 +118,7 @@ def _check_entries(archive: InputFile, entries: list[zipfile.ZipInfo], limits: L
 
 
 def _check_name(archive: InputFile, entry: zipfile.ZipInfo) -> None:
-    # zipfile cuts a name at a NUL and turns backslashes of this system into slashes; orig_filename is what was sent.
+    # zipfile cuts a name at a NUL and turns this system's separators into slashes; orig_filename is what was sent.
     name = entry.orig_filename
     parts = re.split(r"[/\\]", name)
     leads_out = name.startswith(("/", "\\")) or ".." in parts or re.match(r"[A-Za-z]:", name) is not None

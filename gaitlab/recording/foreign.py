@@ -15,6 +15,7 @@ _HINT = (
 _DOT = re.compile(
     r"^\s*(?:sep=|DeviceTag:|SyncStatus:|Measurement Mode:|OutputRate:)", re.IGNORECASE | re.MULTILINE
 )
+_SENSOR_HEADINGS = re.compile(r"\b(?:Acc|Gyr|FreeAcc)_X\b")
 _KNOWN = (
     (re.compile(r"Gyroscope X \(deg/s\)", re.IGNORECASE), "an x-io sensor export"),
     (re.compile(r"(?:left|right)_sensor.*\n.*acc_x", re.IGNORECASE), "a gaitmap table of two sensors"),
@@ -43,8 +44,16 @@ def refuse_foreign(file: InputFile, header: Header | None) -> None:
 
 
 def not_mt_manager(file: InputFile) -> InputError:
-    """The refusal of a text that has no line with ``PacketCounter``."""
+    """The refusal of a text that has no line with ``PacketCounter``: ``missing_columns`` or ``not_mt_manager``."""
     head = head_text(file.content, 4096)
+    headings = next(
+        (line for line, text in enumerate(head.splitlines(), 1) if _SENSOR_HEADINGS.search(text)), None
+    )
+    if headings is not None:
+        message = "The column PacketCounter is missing; it is the clock of the recording."
+        return InputError(
+            "missing_columns", message, _HINT, file=file.name, line=headings, column="PacketCounter"
+        )
     kind = next((name for pattern, name in _KNOWN if pattern.search(head)), None)
     what = f"This looks like {kind}, not an MT Manager export" if kind else "This is not an MT Manager export"
     return InputError(

@@ -18,8 +18,8 @@ MIB = 1024 * 1024
 class Limits:
     """What a recording may measure at most; generous for hours of walking, small enough to refuse an attack.
 
-    ``ratio`` is unpacked over packed size of a zip entry; it is asked only of entries above ``ratio_floor_bytes``,
-    since a tiny file of blanks packs better than any recording.
+    ``ratio`` is unpacked over packed size of a zip entry; it is asked only of entries above
+    ``ratio_floor_bytes``, since a tiny file of blanks packs better than any recording.
     """
 
     file_bytes: int = 256 * MIB

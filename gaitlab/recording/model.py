@@ -1,7 +1,8 @@
 """What was measured: the samples of each sensor on one regular packet clock.
 
-Conventions for the whole of gaitlab: SI units and radians; vectors are rows, shape ``(n, 3)``; quaternions are
-scalar-first ``(w, x, y, z)`` and turn sensor coordinates into world coordinates, z up; intervals are ``[start, end)``.
+Conventions for the whole of gaitlab: SI units and radians; vectors are rows, shape ``(n, 3)``; quaternions
+are scalar-first ``(w, x, y, z)`` and turn sensor coordinates into world coordinates, z up; intervals are
+``[start, end)``.
 """
 
 from __future__ import annotations
@@ -63,7 +64,8 @@ class Placement(StrEnum):
 class Finding:
     """Something about the data that the reader of a result should know; not an error.
 
-    ``code`` is stable and machine-readable; ``message`` is one sentence for people and says what it means for the result.
+    ``code`` is stable and machine-readable; ``message`` is one sentence for people and says what it means for
+    the result.
     """
 
     code: str
@@ -73,7 +75,7 @@ class Finding:
 
 @dataclass(frozen=True)
 class Source:
-    """The file a sensor's samples came from: its name as given (never used as a path) and its content's hash."""
+    """The file a sensor's samples came from: name as given (never used as a path) and hash of the content."""
 
     name: str
     sha256: str
@@ -84,9 +86,9 @@ class Source:
 class Sensor:
     """Samples of one sensor on the regular packet clock: row i was sent with packet ``first_packet + i``.
 
-    Rows that were lost are filled (the next received sample held back over the gap for accelerometer and gyroscope,
-    since the device integrates on board and sends the mean over the gap; magnetometer, pressure and
-    orientation interpolated) and marked in ``received``.
+    Rows that were lost are filled (the next received sample held back over the gap for accelerometer and
+    gyroscope, since the device integrates on board and sends the mean over the gap; magnetometer, pressure
+    and orientation interpolated) and marked in ``received``.
 
     Attributes
     ----------
@@ -99,8 +101,8 @@ class Sensor:
     saturated : ndarray (n,)
         True where accelerometer or gyroscope stood at the end of its range.
     acc_mps2, gyr_radps, mag, free_acc_mps2 : ndarray (n, 3) or None
-        Specific force and angular rate in the sensor's frame; magnetic field in the sensor's frame, arbitrary unit;
-        the device's own free acceleration in its world frame. None where the file has no such columns.
+        Specific force and angular rate in the sensor's frame; magnetic field in the sensor's frame, arbitrary
+        unit; the device's own free acceleration in its world frame. None where the file has no such columns.
     attitude : ndarray (n, 4) or None
         The device's own orientation.
     pressure_pa : ndarray (n,) or None

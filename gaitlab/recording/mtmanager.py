@@ -1,6 +1,7 @@
 """MT Manager text exports in all their variants, and the 10 m walk set that was written after them.
 
-The header is found by ``PacketCounter``; columns are known by name, never by place; time columns may be empty.
+The header is found by ``PacketCounter``; columns are known by name, never by place; time columns may be
+empty.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ from gaitlab.recording.table import read_table
 
 FAMILY = "MT Manager text export"
 _DEVICE_IN_NAME = re.compile(r"_([0-9A-F]{8})\.[A-Za-z]+$", re.IGNORECASE)
-_ORIENTATIONS = (h.QUATERNION, h.MATRIX, h.EULER)
+_ORIENTATIONS = {h.QUATERNION: "quaternions", h.MATRIX: "rotation matrices", h.EULER: "Euler angles"}
 _GROUPS = (h.ACC, h.GYR, h.MAG, h.FREE_ACC, *_ORIENTATIONS, h.PRESSURE)
 
 
@@ -38,7 +39,7 @@ class ReaderParams:
     most_nan_share: float = 0.10
     """More rows without numbers than this, and the file is refused: what fills them would be invention."""
     norm_tolerance: float = 0.02
-    """How far a quaternion's norm, or an element of R Rᵀ, may lie from its value; files round to 4 to 6 digits."""
+    """How far a quaternion's norm or an element of R Rᵀ may be off; files round to 4 to 6 digits."""
 
 
 PARAMS = ReaderParams()
@@ -50,9 +51,9 @@ def read(file: InputFile, limits: Limits = LIMITS) -> Samples:
     Raises
     ------
     InputError
-        With file, line and column. From here ``not_mt_manager``, ``movella_dot``, ``missing_columns``, ``infinite``,
-        ``empty_column``, ``too_many_nan``, ``bad_orientation``; further those of :func:`plain_text`,
-        :func:`find_header`, :func:`read_table`, :func:`unwrap` and :func:`units.check`.
+        With file, line and column. From here ``not_mt_manager``, ``movella_dot``, ``missing_columns``,
+        ``infinite``, ``empty_column``, ``too_many_nan``, ``bad_orientation``; further those of
+        :func:`plain_text`, :func:`find_header`, :func:`read_table`, :func:`unwrap` and :func:`units.check`.
     """
     content = plain_text(file)
     header = find_header(file.name, content, limits)
@@ -61,6 +62,7 @@ def read(file: InputFile, limits: Limits = LIMITS) -> Samples:
         raise not_mt_manager(file)
     units.check_headings(header)
     names = [h.COUNTER, *_stamp(header, content), *(name for group in _groups(header) for name in group)]
+    names.sort(key=header.index.__getitem__)
     table = read_table(content, header, [header.index[name] for name in names], limits)
     return _samples(file, Columns.of(header, table, names))
 
@@ -132,6 +134,7 @@ def _samples(file: InputFile, columns: Columns) -> Samples:
         free_acc_mps2=free_acc,
         attitude=attitude,
         pressure_pa=None if pressure is None else pressure[:, 0],
+        orientation_from=next((_ORIENTATIONS[group] for group in _ORIENTATIONS if group[0] in columns), None),
         n_dropped=n_rows - len(packet),
         n_wraps=n_wraps,
         findings=findings

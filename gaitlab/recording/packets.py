@@ -1,8 +1,8 @@
 """The packet counter is the clock: unwrapped, checked, laid on a regular grid; losses listed and filled.
 
-The sensor integrates on board and sends increments, so the sample after a gap is the mean over the gap, not the
-value at its end: accelerometer and gyroscope hold it back over the lost rows. Measured over 110 trials, that leaves
-a smaller closing error than straight lines (0.54 ± 0.36 m against 0.67 ± 0.51 m).
+The sensor integrates on board and sends increments, so the sample after a gap is the mean over the gap, not
+the value at its end: accelerometer and gyroscope hold it back over the lost rows. Measured over 110 trials,
+that leaves a smaller closing error than straight lines (0.54 ± 0.36 m against 0.67 ± 0.51 m).
 """
 
 from __future__ import annotations
@@ -93,7 +93,8 @@ def unwrap(
     Raises
     ------
     InputError
-        ``counter_not_integer``, ``counter_twice``, ``counter_backward``, ``counter_jump``, each with its line.
+        ``counter_not_integer``, ``counter_twice``, ``counter_backward``, ``counter_jump``, each with its
+        line.
     """
 
     def refuse(code: str, row: int, message: str) -> InputError:

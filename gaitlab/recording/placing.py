@@ -20,8 +20,8 @@ _FOOT = {"foot", "feet", "shoe", "heel", "instep", "forefoot", "f"}
 _KNEE = {"knee", "k"}
 _SHANK = {"shank", "tibia", "shin", "calf", "lowerleg"}
 _ELSEWHERE = {
-    "lb": "low back", "lowback": "low back", "lumbar": "low back", "back": "back", "l5": "low back", "he": "head",
-    "head": "head", "pelvis": "pelvis", "sacrum": "sacrum", "waist": "waist", "trunk": "trunk", "sternum": "sternum",
+    "lb": "low back", "lowback": "low back", "lumbar": "low back", "back": "back", "he": "head", "head": "head",
+    "pelvis": "pelvis", "sacrum": "sacrum", "waist": "waist", "trunk": "trunk", "sternum": "sternum",
     "chest": "chest", "thigh": "thigh", "femur": "thigh", "upperleg": "thigh", "hand": "hand", "wrist": "wrist",
     "forearm": "forearm", "arm": "arm", "upperarm": "arm", "shoulder": "shoulder",
 }  # fmt: skip
@@ -134,7 +134,7 @@ def _place_in_name(name: str) -> tuple[Placement | None, str, str | None]:
 
 
 def _decide(words: Sequence[str]) -> tuple[Placement | None, str]:
-    """The one placement these words tell, and the word for the part of the body; None where they contradict."""
+    """The one placement these words tell, None where they contradict; and the word for the body part."""
     found = [_side_and_part(word) for word in words]
     sides = {side for side, _ in found if side is not None}
     parts = {part in _FOOT: part for _, part in reversed(found) if part}

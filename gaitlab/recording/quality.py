@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from gaitlab.recording.model import Finding, Sensor
-from gaitlab.recording.packets import find_gaps
-from gaitlab.recording.samples import Samples
+from gaitlab.recording.samples import Packets, Samples
 
 
 @dataclass(frozen=True)
@@ -23,33 +24,39 @@ PARAMS = QualityParams()
 
 
 def clock_findings(samples: Samples, sensor: Sensor, params: QualityParams = PARAMS) -> tuple[Finding, ...]:
-    """Findings on lost packets, long gaps and saturation of one sensor (the placement is set by the caller)."""
+    """Findings on lost packets, long gaps and saturation of one sensor (the placement is set by the
+    caller)."""
     found: list[Finding] = []
-    share = sensor.n_lost / sensor.n_samples
-    gaps = find_gaps(samples.packet)
-    longest = max(gaps, key=lambda gap: gap.n_lost, default=None)
-    if longest is not None and share > params.lost_share:
-        what = (
-            "strides there are less certain"
-            if share <= params.most_lost_share
-            else "hardly any result can be trusted"
-        )
-        message = (
-            f"{share:.1%} of the samples were lost in {len(gaps)} gaps, the longest {longest.n_lost / sensor.rate_hz:.2f} s; "
-            f"they are filled, and {what}."
-        )
-        found.append(Finding("lost_samples", message))
-    if longest is not None and longest.n_lost / sensor.rate_hz > params.long_gap_s:
-        start_s = (longest.start_packet - int(samples.packet[0])) / sensor.rate_hz
-        message = (
-            f"A gap of {longest.n_lost / sensor.rate_hz:.1f} s begins {start_s:.1f} s after the sensor's start; what was "
-            "walked in it is not known, and lengths across it are not to be trusted."
-        )
-        found.append(Finding("long_gap", message))
+    lost = np.diff(samples.packet) - 1
+    if sensor.n_lost:
+        found += _loss_findings(lost, samples, sensor, params)
     if sensor.n_saturated:
         message = (
-            f"{sensor.n_saturated} samples stood at the end of the sensor's range; the true values were larger, and strides "
-            "with such samples are less certain."
+            f"{sensor.n_saturated} samples stood at the end of the sensor's range; the true values were larger, and "
+            "strides with such samples are less certain."
         )
         found.append(Finding("saturated", message))
     return tuple(found)
+
+
+def _loss_findings(lost: Packets, samples: Samples, sensor: Sensor, params: QualityParams) -> list[Finding]:
+    found: list[Finding] = []
+    share = sensor.n_lost / sensor.n_samples
+    longest = int(np.argmax(lost))
+    longest_s = float(lost[longest]) / sensor.rate_hz
+    if share > params.lost_share:
+        few = share <= params.most_lost_share
+        what = "strides there are less certain" if few else "hardly any result can be trusted"
+        message = (
+            f"{share:.1%} of the samples were lost in {np.count_nonzero(lost)} gaps, the longest {longest_s:.2f} s;"
+            f" they are filled, and {what}."
+        )
+        found.append(Finding("lost_samples", message))
+    if longest_s > params.long_gap_s:
+        start_s = float(samples.packet[longest] + 1 - samples.packet[0]) / sensor.rate_hz
+        message = (
+            f"A gap of {longest_s:.1f} s begins {start_s:.1f} s after the sensor's start; what was walked in it "
+            "is not known, and lengths across it are not to be trusted."
+        )
+        found.append(Finding("long_gap", message))
+    return found

@@ -20,7 +20,7 @@ _SAME = 0.01
 
 @dataclass(frozen=True)
 class Rate:
-    """The rate in use, where it came from (``user``, ``header``, ``stamps``, ``assumed``) and what to say of it."""
+    """The rate in use, where it came from (user, header, stamps, assumed) and what to say of it."""
 
     hz: float
     origin: str
@@ -28,7 +28,7 @@ class Rate:
 
 
 def rate_from_stamps(packet: Packets, stamp: Floats) -> float | None:
-    """Packets per second from the device's time stamps ``SampleTimeFine`` (n,); None where they are empty or still."""
+    """Packets per second from the device's stamps SampleTimeFine (n,); None where they are empty or still."""
     known = np.isfinite(stamp)
     if np.count_nonzero(known) < 3:
         return None
@@ -52,8 +52,8 @@ def rate_from_stamps(packet: Packets, stamp: Floats) -> float | None:
 def decide_rate(rates: Rates, user_hz: float | None = None) -> Rate | None:
     """The user's rate, else the time stamps' where they contradict the header, else the header's, else None.
 
-    The time stamps come from the device; the header line may have been copied by a converter (a public file says
-    100 Hz over stamps of 60 Hz), so a contradiction is settled for the stamps and said.
+    The time stamps come from the device; the header line may have been copied by a converter (a public file
+    says 100 Hz over stamps of 60 Hz), so a contradiction is settled for the stamps and said.
 
     Raises
     ------
@@ -66,12 +66,15 @@ def decide_rate(rates: Rates, user_hz: float | None = None) -> Rate | None:
         stated = stamps_hz or header_hz
         if stated is None or _same(stated, user_hz):
             return Rate(float(user_hz), "user")
-        message = f"The rate given, {user_hz:g} Hz, is used although the file says {stated:g} Hz; every time and length depends on it."
+        message = (
+            f"The rate given, {user_hz:g} Hz, is used although the file says {stated:g} Hz; every time and length "
+            "depends on it."
+        )
         return Rate(float(user_hz), "user", (Finding("rate_overridden", message),))
     if header_hz and stamps_hz and not _same(header_hz, stamps_hz):
         message = (
-            f"The header says {header_hz:g} Hz, the device's time stamps {stamps_hz:g} Hz; the time stamps are used. "
-            "Every time and length depends on it: give the rate if you know it."
+            f"The header says {header_hz:g} Hz, the device's time stamps {stamps_hz:g} Hz; the time stamps are "
+            "used. Every time and length depends on it: give the rate if you know it."
         )
         return Rate(stamps_hz, "stamps", (Finding("rate_contradiction", message),))
     if header_hz:
@@ -85,8 +88,8 @@ def assumed_rate(other_hz: float | None = None) -> Rate:
         message = f"The file does not say its rate; {other_hz:g} Hz is taken from the other sensors."
         return Rate(other_hz, "assumed", (Finding("rate_assumed", message),))
     message = (
-        f"The file does not say its rate; {DEFAULT_HZ:g} Hz is assumed. If that is wrong, so is every time and length: "
-        "give the rate."
+        f"The file does not say its rate; {DEFAULT_HZ:g} Hz is assumed. If that is wrong, so is every time and "
+        "length: give the rate."
     )
     return Rate(DEFAULT_HZ, "assumed", (Finding("rate_assumed", message),))
 

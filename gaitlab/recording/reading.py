@@ -26,8 +26,8 @@ def read_recording(
     Parameters
     ----------
     paths : Path or str
-        Files, folders or zips. Where each sensor was worn is told by ``placements``, by a ``placement.json`` among the
-        files, by file names, or by the device numbers in it.
+        Files, folders or zips. Where each sensor was worn is told by ``placements``, by a ``placement.json``
+        among the files, by file names, or by the device numbers in it.
     placements : mapping, optional
         Files named outright; a name found among ``paths`` is enough.
     rate_hz : float, optional
@@ -40,7 +40,9 @@ def read_recording(
     """
     from gaitlab.recording.selection import select_files
 
-    return read_files(select_files(paths, placements or {}), rate_hz)
+    selection = select_files(paths, placements or {})
+    recording = read_files(selection.files, rate_hz)
+    return replace(recording, findings=recording.findings + selection.findings)
 
 
 def read_files(files: Mapping[Placement, InputFile], rate_hz: float | None = None) -> Recording:
@@ -49,7 +51,8 @@ def read_files(files: Mapping[Placement, InputFile], rate_hz: float | None = Non
     Raises
     ------
     InputError
-        ``no_files``, ``same_content``, ``same_device``, ``different_rates``, ``no_overlap``, and those of the readers.
+        ``no_files``, ``same_content``, ``same_device``, ``different_rates``, ``no_overlap``, and those of the
+        readers.
     """
     if not files:
         raise InputError("no_files", "There is no sensor file.", "Give at least the file of one foot.")
@@ -102,8 +105,8 @@ def _rates(samples: Mapping[Placement, Samples], rate_hz: float | None) -> dict[
         if not same_rate(rates[a].hz, rates[b].hz):
             raise InputError(
                 "different_rates",
-                f"The sensors were recorded at different rates: {a.label} at {rates[a].hz:g} Hz ({samples[a].file.name}), "
-                f"{b.label} at {rates[b].hz:g} Hz ({samples[b].file.name}).",
+                f"The sensors were recorded at different rates: {_told(samples[a], a)} at {rates[a].hz:g} Hz, "
+                f"{_told(samples[b], b)} at {rates[b].hz:g} Hz.",
                 "Record all sensors together at one rate; if a header is wrong, give the rate.",
                 file=samples[b].file.name,
             )
@@ -126,8 +129,11 @@ def _refuse_same_device(samples: Mapping[Placement, Samples]) -> None:
         if samples[a].device is not None and samples[a].device == samples[b].device:
             raise InputError(
                 "same_device",
-                f"{a.label.capitalize()} ({samples[a].file.name}) and {b.label} ({samples[b].file.name}) come from the "
-                f"same sensor, {samples[a].device}.",
+                f"{_told(samples[a], a)} and {_told(samples[b], b)} come from the same sensor, {samples[a].device}.",
                 "Give each placement its own sensor's file of the same trial.",
                 file=samples[b].file.name,
             )
+
+
+def _told(samples: Samples, placement: Placement) -> str:
+    return f"{placement.label} ({samples.file.name})"

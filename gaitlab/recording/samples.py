@@ -41,6 +41,8 @@ class Samples:
         Packet counter, unwrapped: strictly increasing.
     modulus : int or None
         Where the device's counter wraps; None if it does not.
+    orientation_from : str or None
+        How the file writes the device's orientation, for people.
     n_dropped : int
         Rows of the file that carried no usable numbers; they count as lost.
     """
@@ -57,6 +59,7 @@ class Samples:
     free_acc_mps2: Floats | None = None
     attitude: Floats | None = None
     pressure_pa: Floats | None = None
+    orientation_from: str | None = None
     n_dropped: int = 0
     n_wraps: int = 0
     findings: tuple[Finding, ...] = field(default=())

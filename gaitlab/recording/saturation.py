@@ -14,8 +14,8 @@ from gaitlab.recording.model import Bools, Floats
 class SaturationParams:
     """Where a range ends.
 
-    The two levels are 1.2 % and 1 % below the nominal ends: the factory calibration (gain, misalignment) of each axis
-    shifts them by about 1 % (seen: 156.9 to 158.1 m/s² on one clipped axis of a ±16 g sensor).
+    The two levels are 1.2 % and 1 % below the nominal ends: the factory calibration (gain, misalignment) of
+    each axis shifts them by about 1 % (seen: 156.9 to 158.1 m/s² on one clipped axis of a ±16 g sensor).
     Tuned on: a ±16 g recording with clipped heel strikes (found) and 46 walks with a ±160 m/s² sensor up to
     132 m/s² and 27 rad/s (none found).
     """
@@ -49,27 +49,23 @@ def find_saturation(
         (acc_mps2, params.acc_mps2, params.flat_acc_mps2),
         (gyr_radps, params.gyr_radps, params.flat_gyr_radps),
     ):
-        if signal is None:
-            continue
-        size = np.abs(signal)
-        extreme = size.max(axis=0)
-        if extreme.max() >= level:
-            saturated |= (size >= level).any(axis=1)
-        for axis in np.flatnonzero(extreme >= flat_floor):
-            saturated |= _flat_tops(packet, signal[:, axis], float(extreme[axis]), params)
+        for axis in () if signal is None else np.ascontiguousarray(signal.T):
+            highest, lowest = float(axis.max()), float(axis.min())
+            extreme = max(highest, -lowest)
+            if extreme >= level:
+                saturated |= np.abs(axis) >= level
+            if extreme >= flat_floor:
+                flat_level = extreme * (1 - params.flat_share)
+                _mark_flat_tops(saturated, packet, axis >= flat_level, params.flat_samples)
+                _mark_flat_tops(saturated, packet, axis <= -flat_level, params.flat_samples)
     return saturated
 
 
-def _flat_tops(packet: NDArray[np.int64], signal: Floats, extreme: float, params: SaturationParams) -> Bools:
-    """Runs of successive packets that repeat the extreme."""
-    flat = np.zeros(len(signal), dtype=bool)
-    level = extreme * (1 - params.flat_share)
-    for top in (signal >= level, signal <= -level):
-        at = np.flatnonzero(top)
-        if len(at) < params.flat_samples:
-            continue
-        runs = np.split(at, np.flatnonzero(np.diff(packet[at]) != 1) + 1)
-        for run in runs:
-            if len(run) >= params.flat_samples:
-                flat[run] = True
-    return flat
+def _mark_flat_tops(saturated: Bools, packet: NDArray[np.int64], top: Bools, flat_samples: int) -> None:
+    """Mark runs of successive packets that repeat the extreme, in place."""
+    at = np.flatnonzero(top)
+    if len(at) < flat_samples:
+        return
+    for run in np.split(at, np.flatnonzero(np.diff(packet[at]) != 1) + 1):
+        if len(run) >= flat_samples:
+            saturated[run] = True

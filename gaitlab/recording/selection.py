@@ -1,28 +1,48 @@
-"""Which of the given files belong to the trial, and which sensor each is: the way from paths to placed files."""
+"""Which of the given files belong to the trial, and which sensor each is."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from gaitlab.errors import InputError
+from gaitlab.recording.families import read_samples
 from gaitlab.recording.foreign import is_sensor_text
 from gaitlab.recording.intake import PLACEMENT_FILE, InputFile, clean_name, expand, load
-from gaitlab.recording.model import Placement
+from gaitlab.recording.model import Finding, Placement
 from gaitlab.recording.placing import Guess, guess_one, placed_twice
 
 _HOW = (
-    "Name them with --left-foot, --right-foot, --left-knee and --right-knee, or put a placement.json beside them: "
-    '{"left_foot": "file.txt", …}.'
+    "Name them with --left-foot, --right-foot, --left-knee and --right-knee, or put a placement.json beside "
+    'them: {"left_foot": "file.txt", …}.'
 )
+
+
+@dataclass(frozen=True)
+class Selection:
+    """The files of a trial by placement, and the sensors that were left aside since they were worn elsewhere."""
+
+    files: dict[Placement, InputFile]
+    elsewhere: tuple[Guess, ...] = ()
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        return tuple(
+            Finding(
+                "sensor_not_used",
+                f"{guess.file.name} ({guess.elsewhere}) is not used; only sensors on feet and knees are.",
+            )
+            for guess in self.elsewhere
+        )
 
 
 def select_files(
     paths: Sequence[Path | str],
     placements: Mapping[Placement, Path | str],
     known_devices: Mapping[str, Placement] | None = None,
-) -> dict[Placement, InputFile]:
+) -> Selection:
     """Load paths and place the files: named ones first, then ``placement.json``, then what names and devices tell.
 
     Raises
@@ -31,11 +51,7 @@ def select_files(
         As :func:`place_files`, :func:`load` and :func:`expand`.
     """
     files = expand(load(paths))
-    named = {placement: _named_file(path, files) for placement, path in placements.items()}
-    if not files and not named:
-        raise InputError(
-            "no_files", "There is no sensor file in what was given.", "Give the files of one trial."
-        )
+    named = {Placement(placement): _named_file(path, files) for placement, path in placements.items()}
     return place_files(files, named, known_devices)
 
 
@@ -43,7 +59,7 @@ def place_files(
     files: Sequence[InputFile],
     named: Mapping[Placement, InputFile] | None = None,
     known_devices: Mapping[str, Placement] | None = None,
-) -> dict[Placement, InputFile]:
+) -> Selection:
     """Decide which file is which sensor; files that were already unpacked come in, placed files come out.
 
     Files without a sensor's header are left aside unless they are all there is for a placement, so that a damaged
@@ -52,32 +68,28 @@ def place_files(
     Raises
     ------
     InputError
-        ``placement_twice``, ``placement_unknown``, ``no_sensor_files``, ``placement_file``.
+        ``placement_twice``, ``placement_unknown``, ``no_sensor_files``, ``placement_file``; where the only file is no
+        recording, what its reader says of it.
     """
     placed = dict(named or {})
-    settled = bool(placed)
     if from_json := _placement_json(files):
-        return {**from_json, **placed}
-    free = [
-        file for file in files if not any(file is taken for taken in placed.values()) and not _is_json(file)
-    ]
+        return Selection({**from_json, **placed})
+    taken = [id(file) for file in placed.values()]
+    free = [file for file in files if id(file) not in taken and not _is_json(file)]
     guesses = [guess_one(file, known_devices or {}) for file in free]
     sensors = [guess for guess in guesses if is_sensor_text(guess.file)]
-    candidates = _candidates(sensors, placed) or {}
-    for placement, found in _candidates(
-        [g for g in guesses if g not in sensors], {**placed, **candidates}
-    ).items():
-        candidates[placement] = found
+    unknown = [guess.file.name for guess in sensors if guess.placement is None and guess.elsewhere is None]
+    if unknown and not placed:
+        raise _unknown(unknown)
+    candidates = _candidates(sensors, placed)
+    candidates |= _candidates([guess for guess in guesses if guess not in sensors], {**placed, **candidates})
     for placement, found in candidates.items():
         if len(found) > 1:
             raise placed_twice(placement, [guess.file.name for guess in found])
         placed[placement] = found[0].file
-    unknown = [guess for guess in sensors if guess.placement is None and guess.elsewhere is None]
-    if unknown and not settled:
-        raise _unknown([guess.file.name for guess in unknown])
     if not placed:
-        raise _no_sensors(files, guesses)
-    return placed
+        raise _no_sensors(files, free, guesses)
+    return Selection(placed, tuple(guess for guess in sensors if guess.elsewhere))
 
 
 def _candidates(guesses: Sequence[Guess], taken: Mapping[Placement, object]) -> dict[Placement, list[Guess]]:
@@ -109,7 +121,7 @@ def _named_file(path: Path | str, files: Sequence[InputFile]) -> InputFile:
 
 
 def _placement_json(files: Sequence[InputFile]) -> dict[Placement, InputFile]:
-    """Placements by ``placement.json``; empty where there is none. The names in it are looked up, never opened."""
+    """Placements by ``placement.json``, empty without one. Its names are looked up, never opened."""
     found = [file for file in files if _is_json(file) and file.basename.lower() == PLACEMENT_FILE]
     if not found:
         return {}
@@ -174,14 +186,20 @@ def _unknown(names: Sequence[str]) -> InputError:
     )
 
 
-def _no_sensors(files: Sequence[InputFile], guesses: Sequence[Guess]) -> InputError:
-    elsewhere = next((guess for guess in guesses if guess.elsewhere), None)
-    if elsewhere is not None:
-        return InputError("no_sensor_files", elsewhere.why, _HOW, file=elsewhere.file.name)
+def _no_sensors(
+    files: Sequence[InputFile], free: Sequence[InputFile], guesses: Sequence[Guess]
+) -> InputError:
+    for guess in guesses:
+        if guess.elsewhere:
+            return InputError("no_sensor_files", guess.why, _HOW, file=guess.file.name)
+    if len(free) == 1:
+        read_samples(free[0])  # it has no header, so its reader says what it is instead
+    if not files:
+        return InputError("no_files", "There is no file in what was given.", "Give the files of one trial.")
     names = ", ".join(file.name for file in files[:6])
     return InputError(
         "no_sensor_files",
-        f"None of the files is a sensor recording{f': {names}' if names else ''}.",
+        f"None of the files is a sensor recording: {names}{' …' if len(files) > 6 else ''}.",
         "Export the recordings from MT Manager as text (ASCII), one file a sensor.",
         file=files[0].name if len(files) == 1 else None,
     )

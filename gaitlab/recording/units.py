@@ -1,4 +1,4 @@
-"""Are the numbers in the units they should be in? Gravity, the sensor's range and its own orientation tell."""
+"""Are the numbers in the units they should be in? Gravity, range and the device's orientation tell."""
 
 from __future__ import annotations
 
@@ -35,8 +35,7 @@ class UnitParams:
     """Rows turning faster than this, by the device's orientation, are compared with the gyroscope."""
     turning_rows: int = 20
     rate_ratio_deg: float = 15.0
-    """Gyroscope over rotation of the orientation: 1 if both are in rad/s, 57 if in deg/s (and 0.5 to 2 in practice)."""
-    rate_ratio: tuple[float, float] = (0.5, 2.0)
+    """Gyroscope over rotation of the orientation: 1 if both are in rad/s, 57 if in deg/s."""
     up_share: float = 0.7
     """The device's vertical must carry at least this share of gravity on average."""
     pressure_pa: tuple[float, float] = (30_000.0, 120_000.0)
@@ -87,7 +86,7 @@ def check(samples: Samples, header: Header, line_of: LineOf) -> Samples:
 
 
 def _check_acc(acc_mps2: Floats, header: Header, line_of: LineOf, params: UnitParams = PARAMS) -> None:
-    median = float(np.median(np.sqrt(np.einsum("ij,ij->i", acc_mps2, acc_mps2))))
+    median = _median_size(acc_mps2)
     low, high = params.gravity_mps2
     if not low <= median <= high:
         looks = ""
@@ -95,7 +94,9 @@ def _check_acc(acc_mps2: Floats, header: Header, line_of: LineOf, params: UnitPa
             looks = " They look like g."
         elif median < low:
             looks = " Gravity seems to have been removed."
-        message = f"Acc_X, Acc_Y, Acc_Z are not in m/s²: their median size is {median:.3g}, at rest it is 9.8.{looks}"
+        message = (
+            f"Acc_X, Acc_Y, Acc_Z are not in m/s²: their median size is {median:.3g}, not near 9.8.{looks}"
+        )
         raise InputError(
             "unit_acc", message, _ACC_HINT, file=header.file, line=header.line, column=header.heading("acc_x")
         )
@@ -105,10 +106,13 @@ def _check_acc(acc_mps2: Floats, header: Header, line_of: LineOf, params: UnitPa
 def _check_gyr(samples: Samples, header: Header, line_of: LineOf, params: UnitParams = PARAMS) -> None:
     gyr = samples.gyr_radps
     assert gyr is not None
-    beyond = np.abs(gyr).max(axis=1) > params.gyr_limit_radps
     evidence = ""
-    if beyond.mean() >= params.unit_share and np.count_nonzero(beyond) > 1:
-        evidence = f"{beyond.mean():.0%} of the rows lie beyond {params.gyr_limit_radps:g} rad/s, more than the sensor can measure"
+    n_beyond = _rows_beyond(gyr, params.gyr_limit_radps)
+    if n_beyond > 1 and n_beyond >= params.unit_share * len(gyr):
+        evidence = (
+            f"{n_beyond / len(gyr):.0%} of the rows lie beyond {params.gyr_limit_radps:g} rad/s, "
+            "more than the sensor can measure"
+        )
     elif (ratio := _ratio_to_orientation(samples, params)) is not None and ratio > params.rate_ratio_deg:
         evidence = f"they are {ratio:.0f} times the rotation of the file's own orientation"
     if evidence:
@@ -119,10 +123,17 @@ def _check_gyr(samples: Samples, header: Header, line_of: LineOf, params: UnitPa
     _check_range(gyr, params.gyr_limit_radps, "rad/s", h.GYR, header, line_of)
 
 
+def _rows_beyond(signal: Floats, limit: float) -> int:
+    """How many rows (n, 3) hold a component beyond ± limit."""
+    if max(signal.max(), -signal.min()) <= limit:
+        return 0
+    return int(np.count_nonzero((np.abs(signal) > limit).any(axis=1)))
+
+
 def _check_range(
     signal: Floats, limit: float, unit: str, names: tuple[str, ...], header: Header, line_of: LineOf
 ) -> None:
-    if max(signal.max(), -signal.min()) <= limit:
+    if not _rows_beyond(signal, limit):
         return
     row, axis = np.argwhere(np.abs(signal) > limit)[0]
     raise InputError(
@@ -136,7 +147,7 @@ def _check_range(
 
 
 def _ratio_to_orientation(samples: Samples, params: UnitParams = PARAMS) -> float | None:
-    """Median of the gyroscope's rate over the rate of the device's orientation; None where it cannot be told."""
+    """Median of the gyroscope's rate over the orientation's; None where it cannot be told."""
     rate_hz = samples.rates.stamps_hz or samples.rates.header_hz
     if samples.attitude is None or samples.gyr_radps is None or rate_hz is None or len(samples.packet) < 2:
         return None
@@ -154,14 +165,17 @@ def _check_attitude(samples: Samples, params: UnitParams = PARAMS) -> Samples:
     if samples.attitude is None or samples.acc_mps2 is None:
         return samples
     up = float(np.mean(up_component(samples.attitude, samples.acc_mps2)))
-    if up >= params.up_share * float(
-        np.median(np.sqrt(np.einsum("ij,ij->i", samples.acc_mps2, samples.acc_mps2)))
-    ):
+    if up >= params.up_share * _median_size(samples.acc_mps2):
         return samples
-    message = (
-        f"The device's orientation contradicts gravity (it puts {up:.1f} of 9.8 m/s² upwards) and is not used; "
-        "orientation is estimated from accelerometer and gyroscope instead."
-    )
+    contradiction = f"The device's orientation contradicts gravity: it puts {up:.1f} of 9.8 m/s² upwards"
+    if samples.gyr_radps is None:
+        raise InputError(
+            "bad_orientation",
+            f"{contradiction}.",
+            "Export the recording again with the gyroscope, or with the orientation as quaternions.",
+            file=samples.file.name,
+        )
+    message = f"{contradiction}; it is not used, and orientation is estimated from the other columns instead."
     return replace(samples, attitude=None).with_findings(Finding("attitude_contradicts_gravity", message))
 
 
@@ -174,5 +188,33 @@ def checked_pressure(
     median = float(np.nanmedian(pressure))
     if params.pressure_pa[0] <= median <= params.pressure_pa[1]:
         return pressure, ()
-    message = f"The pressure column is not in pascal (median {median:.4g}) and is not used; heights come from the motion alone."
+    message = (
+        f"The pressure column is not in pascal (median {median:.4g}) and is not used; heights come from the "
+        "motion alone."
+    )
     return None, (Finding("unit_pressure", message),)
+
+
+def unit_evidence(samples: Samples) -> tuple[str, ...]:
+    """What speaks for the units of samples that passed the checks: one sentence each."""
+    said = []
+    if samples.acc_mps2 is not None:
+        said.append(
+            f"the accelerometer's median size is {_median_size(samples.acc_mps2):.2f}; in m/s² it is near 9.8."
+        )
+    if samples.gyr_radps is not None:
+        largest = float(np.abs(samples.gyr_radps).max())
+        said.append(
+            f"the gyroscope reaches {largest:.2f}; rad/s, as the sensor ends at 34.9 (in deg/s at 2000)."
+        )
+    ratio = _ratio_to_orientation(samples)
+    if ratio is not None:
+        said.append(f"the gyroscope turns {ratio:.2f} times as fast as the device's orientation; 1 is right.")
+    if samples.attitude is not None and samples.acc_mps2 is not None:
+        up = float(np.mean(up_component(samples.attitude, samples.acc_mps2)))
+        said.append(f"the device's orientation puts {up:.2f} m/s² upwards on average; 9.8 is right.")
+    return tuple(said)
+
+
+def _median_size(vectors: Floats) -> float:
+    return float(np.median(np.sqrt(np.einsum("ij,ij->i", vectors, vectors))))
