@@ -45,32 +45,41 @@ def record(
     Lost rows are filled as a reader of its file would: the next received sample held back, the slow channels
     interpolated.
     """
-    device = f"00B4{rng.integers(0x1000, 0xFFFF):04X}"
-    mounting = _mounting(errors, rng)
-    force, rate = (mounting.inv().apply(values) for values in exact_samples(motion, ticks, sampling))
-    acc, gyr = _with_errors(force, rate, ticks, errors, rng)
+    own, for_errors, for_attitude, for_mag, for_pressure = rng.spawn(5)
+    device, mounting = f"00B4{own.integers(0x1000, 0xFFFF):04X}", _mounting(errors, own)
+    times_s = ticks.at_s(ticks.rows)
+    ends = motion(np.concatenate([ticks.at_s(np.array([-1])), times_s]))
+    exact = exact_samples(motion, ends, ticks, sampling)
+    force, rate = (mounting.inv().apply(values) for values in exact)
+    acc, gyr = _with_errors(force, rate, ticks, errors, for_errors)
     acc, acc_cut = _digitise(acc, errors.acc_step_mps2, errors.acc_range_mps2)
     gyr, gyr_cut = _digitise(gyr, errors.gyr_step_radps, errors.gyr_range_radps)
-    at = motion(ticks.at_s(ticks.rows))
-    true_attitude = at.rotation * mounting
-    attitude = _device_attitude(true_attitude, ticks.at_s(ticks.rows), errors, rng)
-    mag = true_attitude.inv().apply(_field(at.position_m, errors))
-    mag += errors.mag_noise * rng.standard_normal(mag.shape)
-    pressure = _pressure_pa(at.position_m[:, 2]) + errors.pressure_noise_pa * rng.standard_normal(len(acc))
-    free = attitude[np.maximum(np.arange(len(acc)) - 1, 0)].apply(acc) + FREE_FALL
+    position_m, true_attitude = ends.position_m[1:], ends.rotation[1:] * mounting
+    mag = free = pressure = attitude = None
+    if channels.magnetometer:
+        mag = true_attitude.inv().apply(_field(position_m, errors))
+        mag = _interpolated(mag + errors.mag_noise * for_mag.standard_normal(mag.shape), ticks)
+    if channels.pressure:
+        noise = errors.pressure_noise_pa * for_pressure.standard_normal(len(acc))
+        pressure = _interpolated((_pressure_pa(position_m[:, 2]) + noise)[:, None], ticks)[:, 0]
+    if channels.orientation or channels.free_acceleration:
+        estimate = _device_attitude(true_attitude, times_s, errors, for_attitude)
+        attitude = _interpolated_attitude(estimate, ticks) if channels.orientation else None
+        free = _free_acceleration(estimate, acc, ticks) if channels.free_acceleration else None
+    filled = _next_received(ticks)
     return Sensor(
         placement=placement,
         source=_source(placement, acc, gyr),
         rate_hz=ticks.rate_hz,
         first_packet=errors.first_packet + ticks.start,
         received=ticks.received,
-        saturated=(acc_cut | gyr_cut)[_next_received(ticks)],
-        acc_mps2=acc[_next_received(ticks)],
-        gyr_radps=gyr[_next_received(ticks)],
-        mag=_interpolated(mag, ticks) if channels.magnetometer else None,
-        free_acc_mps2=free[_next_received(ticks)] if channels.free_acceleration else None,
-        attitude=_interpolated_attitude(attitude, ticks) if channels.orientation else None,
-        pressure_pa=_interpolated(pressure[:, None], ticks)[:, 0] if channels.pressure else None,
+        saturated=(acc_cut | gyr_cut)[filled],
+        acc_mps2=acc[filled],
+        gyr_radps=gyr[filled],
+        mag=mag,
+        free_acc_mps2=free,
+        attitude=attitude,
+        pressure_pa=pressure,
         device=device,
     )
 
@@ -113,6 +122,12 @@ def _device_attitude(true: Rotation, t_s: Floats, errors: SensorErrors, rng: np.
     tilt = np.zeros((len(t_s), 3))
     tilt[:, :2] = errors.attitude_tilt_rad * (static + waves @ wander)
     return Rotation.from_rotvec([0.0, 0.0, heading]) * Rotation.from_rotvec(tilt) * true
+
+
+def _free_acceleration(attitude: Rotation, acc: Floats, ticks: Ticks) -> Floats:
+    """The device's own acceleration without gravity, by its orientation at the start of each interval."""
+    before = attitude[np.maximum(np.arange(len(acc)) - 1, 0)]
+    return _interpolated(before.apply(acc) + FREE_FALL, ticks)
 
 
 def _field(position_m: Floats, errors: SensorErrors) -> Floats:

@@ -18,11 +18,11 @@ from gaitlab.simulation.jet import Jet, Track, sin_cos
 from gaitlab.simulation.motion import Motion, Pose
 from gaitlab.simulation.walk import leftward
 
-#: Lean of the shank (rad) for a full stride: at initial contact, foot flat, heel off, foot off and at its
-#: greatest.
-_CONTACT, _FLAT, _HEEL_OFF, _FOOT_OFF, _GREATEST = -0.35, -0.17, 0.32, 0.85, 1.02
-#: Its rates (rad per stride time) at foot flat, heel off and foot off.
-_FLAT_RATE, _HEEL_OFF_RATE, _FOOT_OFF_RATE = 2.0, 1.5, 3.4
+#: Lean of the shank (rad) for a full stride of 1.3 m: at initial contact, foot flat, heel off, foot off and
+#: at its greatest.
+_CONTACT, _FLAT, _HEEL_OFF, _FOOT_OFF, _GREATEST = -0.33, -0.19, 0.32, 0.85, 1.02
+#: Its rates (rad per stride time) at initial contact, foot flat, heel off and foot off.
+_CONTACT_RATE, _FLAT_RATE, _HEEL_OFF_RATE, _FOOT_OFF_RATE = 1.2, 2.0, 1.5, 3.4
 #: Body sway: (frequency in Hz, forward, sideways in rad).
 _SWAY = ((0.23, 0.006, 0.004), (0.41, 0.004, 0.005), (0.83, 0.0015, 0.002))
 #: Outward lean of the shank, and share of the foot's shock that reaches the knee.
@@ -73,8 +73,9 @@ def _sway(t_s: Floats, phase: float) -> tuple[Jet, Jet]:
 
 def _lean(falls: Footfalls) -> Track:
     """Forward lean of the shank in radians."""
-    before = falls.effort
-    after = np.append(falls.effort[1:], 0.0)
+    lengths_m = np.array([gait.stride_length_m for gait in falls.gaits])
+    before = falls.effort * np.minimum(0.3 + 0.54 * lengths_m, 1.1)
+    after = np.append(before[1:], 0.0)
     stands = np.isfinite(falls.stand_start_s)
     stride = np.array([gait.stride_time_s for gait in falls.gaits])
     landing = np.array([gait.landing_s for gait in falls.gaits])
@@ -84,7 +85,12 @@ def _lean(falls: Footfalls) -> Track:
     second = np.where(stands, falls.stand_end_s, falls.heel_off_s)
     walks = np.where(stands, 0.0, 1.0)
     columns = [
-        (falls.initial_contact_s, _CONTACT * before, zero, 0.25 * before / landing**2),
+        (
+            falls.initial_contact_s,
+            _CONTACT * before,
+            _CONTACT_RATE * before / stride,
+            0.1 * before / landing**2,
+        ),
         (first, walks * _FLAT * before, walks * _FLAT_RATE * before / stride, zero),
         (second, walks * _HEEL_OFF * after, walks * _HEEL_OFF_RATE * after / stride, zero),
         (falls.foot_off_s, _FOOT_OFF * after, _FOOT_OFF_RATE * after / stride, zero),

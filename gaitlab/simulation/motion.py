@@ -22,8 +22,8 @@ class Motion:
     ----------
     position_m, velocity_mps, acceleration_mps2 : ndarray (n, 3)
         Of the point, in the world, z up.
-    rotation : Rotation
-        Turns segment coordinates (forward, left, up) into world coordinates.
+    yaw_pitch_roll_rad : ndarray (n, 3)
+        Turn of the segment: about z, then about the new y, then about the new x.
     angular_rate_radps : ndarray (n, 3)
         In segment coordinates.
     """
@@ -31,8 +31,17 @@ class Motion:
     position_m: Floats
     velocity_mps: Floats
     acceleration_mps2: Floats
-    rotation: Rotation
+    yaw_pitch_roll_rad: Floats
     angular_rate_radps: Floats
+
+    @cached_property
+    def rotation(self) -> Rotation:
+        """Turns segment coordinates (forward, left, up) into world coordinates."""
+        half = 0.5 * self.yaw_pitch_roll_rad.T
+        (sy, sp, sr), (cy, cp, cr) = np.sin(half), np.cos(half)
+        w, x = cr * cp * cy + sr * sp * sy, sr * cp * cy - cr * sp * sy
+        y, z = cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy
+        return Rotation.from_quat(np.column_stack([x, y, z, w]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,11 +80,10 @@ class Pose:
             pitch * cos_roll.value + yaw * cos_pitch.value * sin_roll.value,
             yaw * cos_pitch.value * cos_roll.value - pitch * sin_roll.value,
         )
-        angles = np.column_stack([self.yaw.value, self.pitch.value, self.roll.value])
         return Motion(
             position_m=np.column_stack([axis.value for axis in axes]),
             velocity_mps=np.column_stack([axis.rate for axis in axes]),
             acceleration_mps2=np.column_stack([axis.acceleration for axis in axes]),
-            rotation=Rotation.from_euler("ZYX", angles),
+            yaw_pitch_roll_rad=np.column_stack([self.yaw.value, self.pitch.value, self.roll.value]),
             angular_rate_radps=np.column_stack(rate),
         )

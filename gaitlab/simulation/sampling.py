@@ -3,12 +3,12 @@
 Row k of a sensor covers the interval from the packet before it to its own, integrated on board. Two kinds of
 device:
 
-``strapdown`` (MTw and Awinda, which integrate at 1800 Hz) sends the turn over the interval as a rotation vector,
-and the change of velocity in the sensor's frame at the START of the interval, each divided by the interval's
-length. Adding them up again gives the exact movement, however long the interval, and so however many packets
-were lost. On recordings of real MTw sensors the vertical velocity over a stride closes best with this
-convention: −0.02 m/s, against −0.07 with the orientation at the middle and −0.12 with that at the end of the
-interval (341 strides, no packet lost).
+``strapdown`` (MTw and Awinda, which integrate at 1800 Hz) sends the turn over the interval as a rotation
+vector, and the change of velocity in the sensor's frame at the START of the interval, each divided by the
+interval's length. Adding them up again gives the exact movement, however long the interval, and so however
+many packets were lost. On recordings of real MTw sensors the vertical velocity over a stride closes best with
+this convention: −0.02 m/s, against −0.07 with the orientation at the middle and −0.12 with that at the end of
+the interval (341 strides, no packet lost).
 
 ``mean`` sends the mean of specific force and of angular rate in the moving frame of the sensor.
 """
@@ -85,23 +85,20 @@ def draw_ticks(
 
 
 def exact_samples(
-    motion: Callable[[Floats], Motion], ticks: Ticks, sampling: Sampling
+    motion: Callable[[Floats], Motion], ends: Motion, ticks: Ticks, sampling: Sampling
 ) -> tuple[Floats, Floats]:
-    """Specific force (m/s²) and angular rate (rad/s) in the frame of the moving segment for the m received
-    rows, (m, 3)."""
-    if sampling == "strapdown":
-        return _increments(motion, ticks)
-    force, rate = _means(motion, ticks)
-    return ticks.gap_mean(force), ticks.gap_mean(rate)
+    """Specific force (m/s²) and angular rate (rad/s) in the frame of the moving segment, each (m, 3).
 
-
-def _increments(motion: Callable[[Floats], Motion], ticks: Ticks) -> tuple[Floats, Floats]:
-    ends = np.concatenate([[-1], ticks.rows])
-    at = motion(ticks.at_s(ends))
-    length_s = (np.diff(ends) / ticks.rate_hz)[:, None]
-    start = at.rotation[:-1].inv()
-    force = start.apply(np.diff(at.velocity_mps, axis=0) / length_s - FREE_FALL)
-    return force, (start * at.rotation[1:]).as_rotvec() / length_s
+    ``ends`` is the motion at the start of the first row's interval and at the end of each of the m received
+    rows'.
+    """
+    if sampling == "mean":
+        force, rate = _means(motion, ticks)
+        return ticks.gap_mean(force), ticks.gap_mean(rate)
+    length_s = (np.diff(ticks.rows, prepend=-1) / ticks.rate_hz)[:, None]
+    start = ends.rotation[:-1].inv()
+    force = start.apply(np.diff(ends.velocity_mps, axis=0) / length_s - FREE_FALL)
+    return force, (start * ends.rotation[1:]).as_rotvec() / length_s
 
 
 def _means(motion: Callable[[Floats], Motion], ticks: Ticks) -> tuple[Floats, Floats]:
