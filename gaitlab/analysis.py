@@ -44,8 +44,8 @@ def analyze(recording: Recording, settings: Settings | None = None) -> Analysis:
     Raises
     ------
     InputError
-        Where the recording cannot be analysed at all: no foot, too short, neither gyroscope nor orientation, foot and knee
-        swapped, unknown method. Poor data is not an error: it gives "not determinable" with the reason.
+        Where the recording cannot be analysed at all: no foot, too short, neither gyroscope nor orientation, foot
+        and knee swapped, unknown method. Poor data is not an error: it gives "not determinable" with the reason.
     """
     settings = settings or Settings()
     _check(recording, settings)

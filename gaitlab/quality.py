@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -26,8 +27,8 @@ class QualityParams:
     min_duration_s : float
         A shorter recording holds no gait cycle.
     swap_ratio, swap_min : float
-        Foot and knee are swapped where the "foot" is at least so much more restless than the "knee", and restless at all;
-        see ``restlessness``.
+        Foot and knee are swapped where the "foot" is at least so much more restless than the "knee", and restless
+        at all; see ``restlessness``.
     restless_foot : float
         A foot above this does not come to rest as feet do.
     lost_share : float
@@ -48,16 +49,32 @@ class QualityParams:
 
 
 PARAMS = QualityParams()
+_LENGTHS = (
+    "stride_length",
+    "step_length",
+    "step_width",
+    "steady_speed",
+    "stride_velocity",
+    "traversed_distance",
+)
+_TIMES = ("stride_time", "step_time", "cadence", "stance_share", "swing_share", "double_support_share")
+_PATHS = (
+    *_LENGTHS,
+    "walk_time",
+    "walk_speed",
+    "course_check",
+    "path_deviation",
+    "closing_distance",
+    "knee_sway",
+)
 RESERVES: dict[str, tuple[tuple[str, ...], str]] = {
-    "no_standing": (
-        ("speed", "length", "test", "course", "knee"),
-        "Nobody stood still, so the sensors' offsets are less certain.",
-    ),
-    "many_lost": (("speed", "length", "course", "knee"), "Many samples were lost."),
-    "restless_foot": (("speed", "length", "time", "course", "test"), "The foot hardly comes to rest."),
-    "large_residual": (("speed", "length", "course"), "The path drifted much between rests."),
+    "no_standing": (_PATHS, "Nobody stood still, so the sensors' offsets are less certain."),
+    "few_straight": ((*_LENGTHS[:4], *_TIMES), "First and last strides are in it."),
+    "many_lost": (_PATHS, "Many samples were lost."),
+    "restless_foot": ((*_PATHS, *_TIMES), "The foot hardly comes to rest."),
+    "large_residual": (_PATHS, "The path drifted much between rests."),
 }
-"""Finding → groups of parameters that want attention for it, and the reason."""
+"""Finding → names of the parameters that want attention for it, and the reason."""
 
 
 def check_length(recording: Recording) -> None:
@@ -74,7 +91,8 @@ def check_length(recording: Recording) -> None:
 
 
 def check_placements(feet: Mapping[Side, FootMotion], knees: Mapping[Side, KneeMotion]) -> None:
-    """Refuse a recording in which foot and knee of a side are swapped: the foot rests in every cycle, the knee never does."""
+    """Refuse a recording in which foot and knee of a side are swapped: the foot rests in every cycle, the knee
+    never does."""
     for side in knees:
         foot, knee = _restlessness(feet[side]), _restlessness(knees[side])
         if foot is None or knee is None:
@@ -159,10 +177,13 @@ def _of_foot(placement: Placement, foot: FootGait) -> list[Finding]:
             " placement."
         )
         found.append(Finding("restless_foot", message, placement))
+    if foot.few_straight and foot.straight.any():
+        message = f"The {placement.label} has no stride between the first and the last of a straight part: those two,"
+        found.append(Finding("few_straight", f"{message} slower than others, are in the means.", placement))
     saturated = foot.motion.saturated
     if saturated.any():
         moments = foot.motion.rests.moment
-        touched = sum(bool(saturated[a:b].any()) for a, b in zip(moments[:-1], moments[1:], strict=True))
+        touched = sum(bool(saturated[a:b].any()) for a, b in itertools.pairwise(moments))
         message = f"The {placement.label} reached the end of its range in {touched} strides: their lengths are less certain."
         found.append(Finding("saturated", message, placement))
     residual = np.linalg.norm(foot.motion.rests.residual_mps[1:], axis=1)
@@ -180,9 +201,9 @@ def with_reserve(parameters: Sequence[Measurement], found: Sequence[Finding]) ->
     marked = []
     for parameter in parameters:
         for finding in found:
-            groups, reason = RESERVES.get(finding.code, ((), ""))
+            names, reason = RESERVES.get(finding.code, ((), ""))
             concerned = finding.placement is None or parameter.side in ("both", finding.placement.side)
-            if parameter.definition.group in groups and concerned and reason not in parameter.reason:
+            if parameter.definition.name in names and concerned and reason not in parameter.reason:
                 parameter = parameter.with_attention(reason)
         marked.append(parameter)
     return tuple(marked)

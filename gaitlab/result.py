@@ -89,7 +89,8 @@ class Foot(_Part):
 
 
 class KneeStride(_Part):
-    """The knee in one gait cycle: how far it went, and how far the foot's step length was from what it would have gone uncorrected."""
+    """The knee in one gait cycle: how far it went, and how far the foot's step length was from what it would have
+    gone uncorrected."""
 
     start_s: float
     end_s: float

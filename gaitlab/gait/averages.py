@@ -8,7 +8,8 @@ from gaitlab.gait.measurement import Definition, MeasuredSide, Measurement, Stat
 from gaitlab.recording.model import Floats, Side
 
 FEW_STRIDES = 6
-"""Fewer gait cycles than this want attention: Motti Ader et al. 2020, Biosensors 10:128, for foot sensors in multiple sclerosis."""
+"""Fewer gait cycles than this want attention: Motti Ader et al. 2020, Biosensors 10:128, for foot sensors in
+multiple sclerosis."""
 
 
 def mean_of(
@@ -19,7 +20,8 @@ def mean_of(
     common_sd: float,
     reason: str,
 ) -> Measurement:
-    """Mean of ``values`` with u² = Σ u_independent²/n² + u_common²; not determinable, with ``reason``, where there are none.
+    """Mean of ``values`` with u² = Σ u_independent²/n² + u_common²; not determinable, with ``reason``, where there
+    are none.
 
     The scatter between strides is the patient's and is not part of it.
     """
@@ -34,7 +36,7 @@ def mean_of(
 def with_count(measurement: Measurement) -> Measurement:
     """Mark a value that rests on few strides."""
     if 0 < measurement.n < FEW_STRIDES:
-        return measurement.with_attention(f"It rests on {measurement.n} only.")
+        return measurement.with_attention(f"It rests on {measurement.n} only: fewer than {FEW_STRIDES}.")
     return measurement
 
 
@@ -51,7 +53,6 @@ def of_both(left: Measurement, right: Measurement) -> Measurement:
     value = 0.5 * (left.value + right.value)
     sd = 0.5 * float(np.hypot(left.sd, right.sd))
     both = measured(definition, MeasuredSide.BOTH, value, sd, left.n + right.n)
-    reasons = dict.fromkeys(one.reason for one in (left, right) if one.status is Status.ATTENTION)
-    if reasons and both.n < 2 * FEW_STRIDES:
-        return both.with_attention(" ".join(reasons))
+    if min(left.n, right.n) < FEW_STRIDES:
+        return both.with_attention(f"It rests on {left.n} of the left and {right.n} of the right only.")
     return both

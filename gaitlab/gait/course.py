@@ -35,8 +35,8 @@ class TimedCourse:
 def time_course(feet: Mapping[Side, FootGait], course: Course, course_m: float | None) -> TimedCourse | str:
     """Time the walk over the course, or say in a sentence why it cannot be timed.
 
-    The clock starts with the first foot off and stops when the leading foot has come ``course_m`` forward from where it
-    stood, interpolated between samples, on the first straight part.
+    The clock starts with the first foot off and stops when the leading foot has come ``course_m`` forward from
+    where it stood, interpolated between samples, on the first straight part.
     """
     if course_m is None:
         return "No length of a course was given."
@@ -131,12 +131,13 @@ def speeds(feet: Mapping[Side, FootGait]) -> list[Measurement]:
 
 
 def _speed(definition: Definition, side: Side, foot: FootGait, rows: Bools, reason: str) -> Measurement:
+    """Mean of stride length over stride time; a stride after standing has no contact before it and no stride time."""
     contact = foot.events.initial_contact_s
     k = np.flatnonzero(rows)
-    first = k[(k == 0) | ~foot.walking[np.maximum(k - 1, 0)]]
-    begin = np.where(np.isin(k, first), foot.events.foot_off_s[k], contact[np.maximum(k - 1, 0)])
-    duration = contact[k] - begin
-    usable = (duration > 0.2) & (duration <= LONGEST_STRIDE_S)
+    k = k[k > 0]
+    k = k[foot.walking[k - 1]]
+    duration = contact[k] - contact[k - 1]
+    usable = (duration > 0) & (duration <= LONGEST_STRIDE_S)
     k, duration = k[usable], duration[usable]
     values = foot.length_m[k] / duration
     jitter = np.sqrt(2.0) * EventParams().event_sd_s * values / duration

@@ -68,7 +68,8 @@ STRIDE_VELOCITY = _definition(
     "m/s",
     "speed",
     2,
-    "Mean over the straight strides of stride length divided by stride time, first and last strides included.",
+    "Mean over all strides on straight parts of stride length divided by stride time; the stride after standing has no"
+    " stride time and is not in it.",
     IKIZOGLU,
 )
 DISTANCE = _definition(

@@ -17,8 +17,8 @@ class EventParams:
     Attributes
     ----------
     off_speed_share : float
-        Foot off is when the foot's speed first passes this share of the swing's peak: of the shares from 0.1 to 0.5 the one
-        that agrees best with the hand-checked events of ``mtw-10m-walk``.
+        Foot off is when the foot's speed first passes this share of the swing's peak: of the shares from 0.1 to 0.5
+        the one that agrees best with the hand-checked events of ``mtw-10m-walk``.
     event_sd_s : float
         Standard deviation of both events against the same hand-checked ones, tenth part trimmed.
     event_bias_sd_s : float
@@ -43,12 +43,13 @@ def find_events(foot: FootMotion, params: EventParams | None = None) -> FootEven
 
     Foot off: the speed of the foot first passes 30 % of the swing's peak.
 
-    Initial contact: the median of three witnesses after the peak of forward speed: the end of the fastest descent (minimum
-    of vertical velocity), the fastest slap of the forefoot to the ground (maximum of the angular rate that lowers the
-    toes) and the largest jerk. One of them may fail (a flat landing has no slap, a soft one no jerk), the median stands.
+    Initial contact: the median of three witnesses after the peak of forward speed: the end of the fastest descent
+    (minimum of vertical velocity), the fastest slap of the forefoot to the ground (maximum of the angular rate that
+    lowers the toes) and the largest jerk. One of them may fail (a flat landing has no slap, a soft one no jerk),
+    the median stands.
 
-    Ours; no template of a population and no axis of the sensor enters. Where a foot only turns on the spot the direction of
-    its toes is taken for the direction of movement.
+    Ours; no template of a population and no axis of the sensor enters. Where a foot only turns on the spot the
+    direction of its toes is taken for the direction of movement.
     """
     p = params or EventParams()
     rests = foot.rests

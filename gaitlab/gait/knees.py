@@ -14,7 +14,8 @@ from gaitlab.motion.model import KneeMotion
 from gaitlab.recording.model import Floats, Side
 
 SWAY_SD_M = 0.005
-"""Uncertainty of the knee's movement across the line of walking within a rest of about 0.3 s: an acceleration error of 0.08 m/s² and the sensor's play on the skin."""
+"""Uncertainty of the knee's movement across the line of walking within a rest of about 0.3 s: an acceleration error
+of 0.08 m/s² and the sensor's play on the skin."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +28,8 @@ class KneeGait:
 
 
 def knee_gait(motion: KneeMotion, foot: FootGait, shift: int) -> KneeGait:
-    """Sway of a knee across the line of walking in each rest between two straight strides; knee row = foot row + shift.
+    """Sway of a knee across the line of walking in each rest between two straight strides; knee row = foot row +
+    shift.
 
     The line through the movement over the rest is taken out: the leg leans steadily over the standing foot.
     """

@@ -13,7 +13,8 @@ from gaitlab.gait.strides import FootGait, Steps
 from gaitlab.motion.heading import HeadingParams
 from gaitlab.recording.model import Bools, Floats, Side
 
-NO_STEADY = "There is no steady stride: no straight part has a stride between its first and its last."
+NO_STEADY = "There is no stride on a straight part."
+NO_STEP = "There is no step between two strides on a straight part."
 NO_FOOT = "The {side} foot was not recorded."
 ONE_FOOT = "It needs both feet; the {side} foot was not recorded."
 
@@ -72,19 +73,18 @@ def traversed_distance(feet: Mapping[Side, FootGait]) -> list[Measurement]:
 def step_length(feet: Mapping[Side, FootGait], steps: Steps) -> list[Measurement]:
     """Left, right and both.
 
-    A foot that stood 3 cm before the other makes one side's steps longer and the other's shorter by that much; the mean of
-    both sides does not know of it.
+    A foot that stood 3 cm before the other makes one side's steps longer and the other's shorter by that much; the
+    mean of both sides does not know of it.
     """
     missing = [side for side in Side if side not in feet]
     if missing:
         reason = ONE_FOOT.format(side=missing[0])
         return [not_determinable(d.STEP_LENGTH, side, reason) for side in MeasuredSide]
     stagger = HeadingParams().standing_stagger_sd_m
-    reason = "There is no step between two steady strides."
+    reason = NO_STEP
     sides = []
     for side in Side:
         rows = steps.steady & (steps.left == (side is Side.LEFT))
-        foot = feet[side]
         spread = _drift_between(feet)
         value = mean_of(
             d.STEP_LENGTH, side, steps.length_m[rows], 0.0, float(np.hypot(stagger, spread)), reason
@@ -125,7 +125,7 @@ def step_width(feet: Mapping[Side, FootGait], steps: Steps) -> list[Measurement]
         return [not_determinable(d.STEP_WIDTH, both, ONE_FOOT.format(side=missing[0]))]
     widths = steps.width_m[steps.steady]
     if not len(widths):
-        return [not_determinable(d.STEP_WIDTH, both, "There is no step between two steady strides.")]
+        return [not_determinable(d.STEP_WIDTH, both, NO_STEP)]
     params = HeadingParams()
     sd = float(np.hypot(params.standing_width_sd_m, _drift_between(feet)))
     value = float(widths.mean())

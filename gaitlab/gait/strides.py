@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -13,7 +14,8 @@ from gaitlab.motion.model import FootMotion
 from gaitlab.recording.model import Bools, Floats, Side
 
 MIN_WALKING_STRIDE_M = 0.1
-"""A shorter movement of a foot is a shift of place, not a stride of a walk (shortest stride in mobgap's gates: 0.15 m)."""
+"""A shorter movement of a foot is a shift of place, not a stride of a walk (shortest stride in mobgap's gates: 0.15
+m)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +31,10 @@ class FootGait:
     common_sd : float
         Part of the relative uncertainty of the lengths that all strides share (scale).
     turning, straight, steady : ndarray of bool
-        The foot turns in the stride; it lies in a straight part and walks; and is neither the first nor the last there.
+        The foot turns in the stride; it lies in a straight part and walks; and is neither the first nor the last
+        there (of a walk that has no such stride, all straight ones: see ``few_straight``).
+    few_straight : bool
+        No straight part has a stride between its first and its last.
     doubtful : ndarray of bool
         More than a tenth of its rows were lost or saturated.
     """
@@ -44,6 +49,7 @@ class FootGait:
     turning: Bools
     straight: Bools
     steady: Bools
+    few_straight: bool
     doubtful: Bools
 
     def __len__(self) -> int:
@@ -70,6 +76,9 @@ def foot_gait(motion: FootMotion, course: Course, common_sd: float) -> FootGait:
         straight |= inside
         rows = np.flatnonzero(inside)
         steady[rows[1:-1]] = True
+    few_straight = not steady.any()
+    if few_straight:
+        steady = straight.copy()
     return FootGait(
         motion,
         events,
@@ -81,6 +90,7 @@ def foot_gait(motion: FootMotion, course: Course, common_sd: float) -> FootGait:
         turning,
         straight,
         steady,
+        few_straight,
         _doubtful(motion),
     )
 
@@ -136,7 +146,7 @@ def find_steps(feet: Mapping[Side, FootGait]) -> Steps:
     ]
     contacts.sort(key=lambda one: one[0])
     rows = []
-    for (t_before, other, j), (t, side, k) in zip(contacts, contacts[1:], strict=False):
+    for (t_before, other, j), (t, side, k) in itertools.pairwise(contacts):
         if side is other or not (feet[side].straight[k] and feet[other].walking[j]):
             continue
         if not feet[other].straight[j]:

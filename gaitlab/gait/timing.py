@@ -10,7 +10,7 @@ import numpy as np
 from gaitlab.gait import definitions as d
 from gaitlab.gait.averages import mean_of, of_both, with_count
 from gaitlab.gait.events import EventParams
-from gaitlab.gait.lengths import NO_FOOT, NO_STEADY, ONE_FOOT
+from gaitlab.gait.lengths import NO_FOOT, NO_STEADY, NO_STEP, ONE_FOOT
 from gaitlab.gait.measurement import Definition, MeasuredSide, Measurement, measured, not_determinable
 from gaitlab.gait.strides import FootGait, Steps
 from gaitlab.recording.model import Floats, Side
@@ -23,7 +23,8 @@ STOP_S = 1.0
 
 @dataclass(frozen=True, eq=False)
 class Phases:
-    """Times of the steady strides of a foot, in seconds: stride, stance before the swing, swing; and when they began."""
+    """Times of the steady strides of a foot, in seconds: stride, stance before the swing, swing; and when they
+    began."""
 
     contact_s: Floats
     off_s: Floats
@@ -117,7 +118,6 @@ def _step_times(feet: Mapping[Side, FootGait], steps: Steps, jitter: float, bias
             not_determinable(d.CADENCE, MeasuredSide.BOTH, reason),
         ]
     usable = steps.steady & (steps.time_s <= 0.5 * LONGEST_STRIDE_S)
-    reason = "There is no step between two steady strides."
     sides = [
         mean_of(
             d.STEP_TIME,
@@ -125,7 +125,7 @@ def _step_times(feet: Mapping[Side, FootGait], steps: Steps, jitter: float, bias
             steps.time_s[usable & (steps.left == (side is Side.LEFT))],
             jitter,
             bias,
-            reason,
+            NO_STEP,
         )
         for side in Side
     ]
@@ -140,7 +140,8 @@ def _step_times(feet: Mapping[Side, FootGait], steps: Steps, jitter: float, bias
 
 
 def walking_span(feet: Mapping[Side, FootGait]) -> tuple[float, float] | None:
-    """From the first foot off to the last initial contact of a walking stride, in seconds; None where nobody walks."""
+    """From the first foot off to the last initial contact of a walking stride, in seconds; None where nobody
+    walks."""
     first, last = [], []
     for foot in feet.values():
         rows = np.flatnonzero(foot.walking)

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from gaitlab.motion import ikizoglu2018
-from gaitlab.motion.integration import displacement_sd, integrate, reset_at_rests
+from gaitlab.motion.integration import displacement_sd, position_of, reset_at_rests, velocity_of
 from gaitlab.motion.model import FootMotion, Motion, Offsets, Rests
 from gaitlab.motion.offset import STANDARD_GRAVITY_MPS2, find_offsets
 from gaitlab.motion.orientation import OrientationSource, estimate
-from gaitlab.motion.quaternions import conjugate, multiply, rotate, twist_about_vertical
+from gaitlab.motion.quaternions import conjugate, midway, multiply, rotate, twist_about_vertical
 from gaitlab.motion.rest import find_rests
 from gaitlab.motion.signals import signals_of
 from gaitlab.recording.model import Bools, Floats, Sensor
@@ -21,8 +21,8 @@ from gaitlab.recording.model import Bools, Floats, Sensor
 class StrideEvidence:
     """What tells a movement of the foot from a fidget.
 
-    Two rests between which the foot went less than ``min_length_m`` and turned less than ``min_turn_rad`` are one rest:
-    half a sensor's length, and what a standing person's sway turns a foot.
+    Two rests between which the foot went less than ``min_length_m`` and turned less than ``min_turn_rad`` are one
+    rest: half a sensor's length, and what a standing person's sway turns a foot.
     """
 
     min_length_m: float = 0.04
@@ -39,13 +39,11 @@ def free_motion(sensor: Sensor, time_s: Floats, source: OrientationSource | None
     acc = signals.acc_mps2 - np.array(offsets.acc_mps2)
     gyr = signals.gyr_radps - np.array(offsets.gyr_radps)
     device = source is OrientationSource.DEVICE or (source is None and signals.gyr_derived)
-    if device and sensor.attitude is not None:
-        attitude = sensor.attitude
-    else:
-        attitude = estimate(acc, gyr, sensor.rate_hz)
-    acceleration = remove_gravity(rotate(attitude, acc), offsets)
-    velocity = integrate(acceleration, sensor.rate_hz)
-    position = integrate(velocity, sensor.rate_hz)
+    own = sensor.attitude if device else None
+    attitude = own if own is not None else estimate(acc, gyr, sensor.rate_hz)
+    acceleration = remove_gravity(rotate(midway(attitude, gyr, sensor.rate_hz), acc), offsets)
+    velocity = velocity_of(acceleration, sensor.rate_hz)
+    position = position_of(velocity, sensor.rate_hz)
     return Motion(
         sensor.placement,
         sensor.rate_hz,
@@ -64,7 +62,8 @@ def free_motion(sensor: Sensor, time_s: Floats, source: OrientationSource | None
 
 
 def remove_gravity(force: Floats, offsets: Offsets) -> Floats:
-    """Free acceleration from specific force in world axes, shape (n, 3): without gravity and without its static offset.
+    """Free acceleration from specific force in world axes, shape (n, 3): without gravity and without its static
+    offset.
 
     What is left while standing is a tilt of the orientation by a fraction of a degree; its mean is subtracted
     (İkizoğlu et al. 2018, §3.2).
@@ -99,10 +98,10 @@ def track_foot(
         free = free_motion(sensor, time_s, source)
         found = find_rests(free.acceleration_mps2, free.rate_radps, free.rate_hz)
         velocity, rests = reset_at_rests(free.raw_velocity_mps, found)
-        keep = _moved_before(free, rests, integrate(velocity, free.rate_hz))
+        keep = _moved_before(free, rests, position_of(velocity, free.rate_hz))
         if not keep.all():
             velocity, rests = reset_at_rests(free.raw_velocity_mps, _joined(found, keep))
-    position = integrate(velocity, free.rate_hz)
+    position = position_of(velocity, free.rate_hz)
     return _foot_motion(free, velocity, position, rests)
 
 

@@ -20,8 +20,8 @@ class HeadingParams:
     Attributes
     ----------
     stride_turn_rad : float
-        A stride in which the foot turns by at least this much is a turning one; 20°, against 3° of scatter in straight
-        strides of ``mtw-10m-walk``.
+        A stride in which the foot turns by at least this much is a turning one; 20°, against 3° of scatter in
+        straight strides of ``mtw-10m-walk``.
     curve_turn_rad, curve_strides : float, int
         So is one of this many successive strides that together turn this much (45° in 3).
     turn_rad : float
@@ -29,8 +29,9 @@ class HeadingParams:
     min_straight_m : float
         Shorter stretches give no direction.
     standing_width_m, standing_width_sd_m : float
-        Distance between the two foot sensors while standing before the walk: an assumption, for nothing in the recording
-        tells it. Comfortable stance: 0.17 m between the heel centres (McIlroy and Maki 1997, Clin Biomech 12:66).
+        Distance between the two foot sensors while standing before the walk: an assumption, for nothing in the
+        recording tells it. Comfortable stance: 0.17 m between the heel centres (McIlroy and Maki 1997, Clin Biomech
+        12:66).
     standing_stagger_sd_m : float
         How far one foot may stand before the other when they are "side by side": an assumption.
     """
@@ -108,10 +109,11 @@ def find_course(feet: Mapping[Side, FootMotion], params: HeadingParams | None = 
 def to_common_frame(
     feet: Mapping[Side, FootMotion], course: Course, params: HeadingParams | None = None
 ) -> tuple[dict[Side, FootMotion], dict[Side, tuple[float, Floats]]]:
-    """Bring the feet into one world frame: x along the first straight part, origin midway between the feet at the start.
+    """Bring the feet into one world frame: x along the first straight part, origin midway between the feet at the
+    start.
 
-    Three assumptions join the feet: each walks the first straight part in the same direction; they stand side by side at
-    the start; and ``standing_width_m`` apart. A foot alone stands on the origin.
+    Three assumptions join the feet: each walks the first straight part in the same direction; they stand side by
+    side at the start; and ``standing_width_m`` apart. A foot alone stands on the origin.
 
     Returns
     -------
@@ -192,7 +194,8 @@ def _longest(feet: Mapping[Side, FootMotion], start_s: float, end_s: float) -> f
 
 
 def _direction(foot: FootMotion, course: Course) -> float:
-    """Direction in radians in which the foot walks the first straight part; of its farthest rest where there is none."""
+    """Direction in radians in which the foot walks the first straight part; of its farthest rest where there is
+    none."""
     places = _rests_within(foot, *course.straights[0]) if course.straights else np.zeros((0, 3))
     if len(places) < 2:
         places = foot.rest_position_m

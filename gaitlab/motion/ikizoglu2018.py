@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gaitlab.motion.integration import integrate
+from gaitlab.motion.integration import position_of, velocity_of
 from gaitlab.motion.model import Motion, Rests
 from gaitlab.recording.model import Floats, Sensor
 
@@ -38,8 +38,8 @@ class PaperParams:
 def free_motion(sensor: Sensor, estimated: Motion, params: PaperParams | None = None) -> Motion:
     """Free acceleration as the paper takes it: the device's own, its mean from 2 s to 3 s removed per axis.
 
-    Deviations: where the file has no free acceleration, it is computed from the orientation; where the foot does not stand
-    from 2 s to 3 s, the mean is taken over the standing second that was found.
+    Deviations: where the file has no free acceleration, it is computed from the orientation; where the foot does
+    not stand from 2 s to 3 s, the mean is taken over the standing second that was found.
     """
     p = params or PaperParams()
     acceleration = sensor.free_acc_mps2 if sensor.free_acc_mps2 is not None else estimated.acceleration_mps2
@@ -48,20 +48,20 @@ def free_motion(sensor: Sensor, estimated: Motion, params: PaperParams | None = 
     if estimated.offsets.standing or end > len(acceleration):
         start, end = estimated.offsets.start, estimated.offsets.end
     acceleration = acceleration - acceleration[start:end].mean(axis=0)
-    velocity = integrate(acceleration, rate_hz)
+    velocity = velocity_of(acceleration, rate_hz)
     return replace(
         estimated,
         acceleration_mps2=acceleration,
         raw_velocity_mps=velocity,
-        raw_position_m=integrate(velocity, rate_hz),
+        raw_position_m=position_of(velocity, rate_hz),
     )
 
 
 def find_rests(acceleration_mps2: Floats, rate_hz: float, params: PaperParams | None = None) -> Rests:
     """Rests: the resultant of the free acceleration stays below 0.15 m/s² for at least 5 successive samples (§3.3).
 
-    The moment of each rest is its middle row. On ``mtw-10m-walk`` this finds 5 % of the stances: it depends on how well
-    gravity was removed, instant by instant.
+    The moment of each rest is its middle row. On ``mtw-10m-walk`` this finds 5 % of the stances: it depends on how
+    well gravity was removed, instant by instant.
     """
     p = params or PaperParams()
     still = np.linalg.norm(acceleration_mps2, axis=1) < p.rest_acceleration_mps2
@@ -77,7 +77,7 @@ def reset_at_rests(acceleration_mps2: Floats, rests: Rests, rate_hz: float) -> t
 
     Nothing is removed between two rests: what the drift has grown to shows as a jump at the next one.
     """
-    raw = integrate(acceleration_mps2, rate_hz)
+    raw = velocity_of(acceleration_mps2, rate_hz)
     if not len(rests):
         return raw, rests
     last = np.maximum(rests.end - 1, rests.start)
@@ -94,8 +94,8 @@ def correct_knee(
 ) -> Floats:
     """Knee velocity whose displacement over each cycle is the foot's step, on x and on y (§3.3, fig. 4, 5).
 
-    In each cycle a constant velocity offset is removed; rows outside all cycles take the offset of the nearest. The height
-    is treated alike: a walk on the flat does not climb.
+    In each cycle a constant velocity offset is removed; rows outside all cycles take the offset of the nearest. The
+    height is treated alike: a walk on the flat does not climb.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def correct_knee(
     foot_displacement_m : ndarray (m, 3)
     """
     velocity = raw_velocity_mps.copy()
-    position = integrate(raw_velocity_mps, rate_hz)
+    position = position_of(raw_velocity_mps, rate_hz)
     for k, (start, end) in enumerate(cycles):
         offset = (position[end] - position[start] - foot_displacement_m[k]) / ((end - start) / rate_hz)
         low = 0 if k == 0 else start

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,11 +10,21 @@ from gaitlab.motion.model import Indices, Rests
 from gaitlab.recording.model import Floats
 
 
-def integrate(values: Floats, rate_hz: float) -> Floats:
-    """Running integral by the trapezoidal rule, zero at row 0, shape (n, 3)."""
-    result = np.zeros_like(values)
-    np.cumsum((values[1:] + values[:-1]) * (0.5 / rate_hz), axis=0, out=result[1:])
-    return result
+def velocity_of(acceleration_mps2: Floats, rate_hz: float) -> Floats:
+    """Velocity at the end of each sample's interval, zero at row 0, shape (n, 3).
+
+    Each sample is the mean acceleration over the interval that ends with it, so its sum is exact.
+    """
+    velocity = np.cumsum(acceleration_mps2, axis=0) / rate_hz
+    moved: Floats = velocity - velocity[0]
+    return moved
+
+
+def position_of(velocity_mps: Floats, rate_hz: float) -> Floats:
+    """Position by the trapezoidal rule, zero at row 0, shape (n, 3)."""
+    position = np.zeros_like(velocity_mps)
+    np.cumsum((velocity_mps[1:] + velocity_mps[:-1]) * (0.5 / rate_hz), axis=0, out=position[1:])
+    return position
 
 
 def _knots(rests: Rests) -> Indices:
@@ -27,8 +37,8 @@ def _knots(rests: Rests) -> Indices:
 def reset_at_rests(raw_velocity_mps: Floats, rests: Rests) -> tuple[Floats, Rests]:
     """Set the velocity to zero in every rest and take the drift out of the movement between.
 
-    The velocity at the ends of each rest is pure drift; between two rests it is removed in proportion to time, before the
-    first and after the last rest it is taken as constant.
+    The velocity at the ends of each rest is pure drift; between two rests it is removed in proportion to time,
+    before the first and after the last rest it is taken as constant.
 
     Returns
     -------
@@ -52,6 +62,27 @@ def reset_at_rests(raw_velocity_mps: Floats, rests: Rests) -> tuple[Floats, Rest
     return velocity, replace(rests, residual_mps=residual)
 
 
+@dataclass(frozen=True)
+class PathUncertainty:
+    """Sizes of the errors that the removal of drift leaves.
+
+    Attributes
+    ----------
+    unlinear_share : float
+        Share of the residual velocity that did not grow linearly and so is not removed. 0.4 makes the interval cover
+        the optical stride lengths of ``mtw-leg-vicon``; simulated walks with perfect rests would allow 0.1.
+    rest_speed_mps : float
+        A resting foot is not exactly still: speed of the optical mid-foot in the rests of ``mtw-leg-vicon``, 0.014 to
+        0.025 m/s, marker noise included.
+    doubt_factor : float
+        The drift's part is widened by 1 + this · share of lost or saturated rows.
+    """
+
+    unlinear_share: float = 0.4
+    rest_speed_mps: float = 0.01
+    doubt_factor: float = 10.0
+
+
 def displacement_sd(
     rests: Rests, rate_hz: float, gravity_error: float, length_m: Floats, doubtful: Floats
 ) -> Floats:
@@ -59,19 +90,21 @@ def displacement_sd(
 
     Three independent parts:
 
-    1. Drift. An acceleration error that is white over a swing of duration T and leaves the residual velocity Δv leaves,
-       after the linear removal, a Brownian bridge in velocity: u = Δv·T/√12. Δv is the RMS of the stride's own residual and
-       the recording's, since one residual alone says little about its spread.
-    2. Rest. A resting foot is not exactly still: 0.01 m/s over the swing, the median speed of the optical heel in rest.
+    1. Drift. An acceleration error that is white over a swing of duration T and leaves the residual velocity Δv
+       leaves, after the linear removal, a Brownian bridge in velocity: u = Δv·T/√12. Δv is the RMS of the stride's
+       own residual and the recording's (one residual alone says little about its spread) times ``unlinear_share``.
+    2. Rest. ``rest_speed_mps`` over the swing.
     3. Scale. Gravity read wrong by the share e may be an error of scale as well as of offset: u = e·L/√3.
 
-    ``doubtful`` (k − 1,) is the share of lost or saturated rows in each stride; it widens part 1 by 1 + 10·share.
+    ``doubtful`` (k − 1,) is the share of lost or saturated rows in each stride; it widens the first part.
     """
+    p = PathUncertainty()
     swing_s = (rests.start[1:] - np.maximum(rests.end[:-1] - 1, rests.start[:-1])) / rate_hz
     own = np.linalg.norm(rests.residual_mps[1:, :2], axis=1) / np.sqrt(2.0)
     common = np.sqrt(np.mean(own**2)) if len(own) else 0.0
-    drift = np.sqrt(0.5 * (own**2 + common**2)) * swing_s / np.sqrt(12.0) * (1.0 + 10.0 * doubtful)
-    rest = 0.01 * swing_s
+    remaining = p.unlinear_share * np.sqrt(0.5 * (own**2 + common**2)) * (1.0 + p.doubt_factor * doubtful)
+    drift = remaining * swing_s / np.sqrt(12.0)
+    rest = p.rest_speed_mps * swing_s
     scale = gravity_error * length_m / np.sqrt(3.0)
     sd: Floats = np.sqrt(drift**2 + rest**2 + scale**2)
     return sd

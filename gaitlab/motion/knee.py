@@ -9,7 +9,7 @@ from scipy.linalg import solveh_banded
 
 from gaitlab.motion import ikizoglu2018
 from gaitlab.motion.foot import free_motion
-from gaitlab.motion.integration import integrate
+from gaitlab.motion.integration import position_of
 from gaitlab.motion.model import FootMotion, Indices, KneeMotion, Motion
 from gaitlab.motion.orientation import OrientationSource
 from gaitlab.recording.model import Floats, Sensor
@@ -25,7 +25,8 @@ class KneeParams:
         How far the knee's displacement in a gait cycle may lie from the foot's step length in mid-walk; measured
         against optical knees: 0.02.
     edge_step_sd_m : float
-        The same for the first and the last cycle, where the person starts from and comes to standing: measured 0.05–0.16.
+        The same for the first and the last cycle, where the person starts from and comes to standing: measured
+        0.05–0.16.
     drift_mps2 : float
         Acceleration error that lasts about a second: what a tilt of half a degree makes of gravity.
     standing_margin_s : float
@@ -45,7 +46,8 @@ class KneeParams:
 class Cycles:
     """Gait cycles of a foot in the rows of its knee: from leaving one rest to leaving the next.
 
-    ``start``, ``end`` (m,) rows; ``step_m`` (m, 3) the foot's displacement; ``edge`` (m,) True for the first and last.
+    ``start``, ``end`` (m,) rows; ``step_m`` (m, 3) the foot's displacement; ``edge`` (m,) True for the first and
+    last.
     """
 
     start: Indices
@@ -80,9 +82,9 @@ def heading_against_foot(
     """Angle in radians by which the knee's horizontal axes must be turned to the left to agree with its foot's.
 
     From cycle to cycle knee and foot change their mean velocity alike: at the start, in a turn, at the stop. With the
-    horizontal plane as complex numbers and Δ from one cycle to the next, ΔV_foot = z·ΔV_knee + b·Δt, b a constant drift; the
-    angle is that of z. It needs no magnetometer and holds for any place on the leg. Standing spans count as cycles of no
-    movement.
+    horizontal plane as complex numbers and Δ from one cycle to the next, ΔV_foot = z·ΔV_knee + b·Δt, b a constant
+    drift; the angle is that of z. It needs no magnetometer and holds for any place on the leg. Standing spans count
+    as cycles of no movement.
     """
     spans = [(a, b, 0j) for a, b in standing]
     spans += [
@@ -103,7 +105,8 @@ def heading_against_foot(
 
 
 def standing_spans(foot: FootMotion, n_rows: int, shift: int, params: KneeParams) -> list[tuple[int, int]]:
-    """Rows in which the person stands before the first and after the last cycle: up to a second of each, if there is one."""
+    """Rows in which the person stands before the first and after the last cycle: up to a second of each, if there
+    is one."""
     rate_hz = foot.rate_hz
     margin, second = round(params.standing_margin_s * rate_hz), round(rate_hz)
     spans = []
@@ -127,17 +130,18 @@ def correct_velocity(
 ) -> Floats:
     """Knee velocity whose drift, linear between the cycles' borders, is the likeliest under three statements.
 
-    The knee goes as far in each cycle as its foot (loosely in the first and last), it is still while the person stands, and
-    the drift changes slowly. A banded least-squares problem in the drift at the borders, solved once for all axes.
+    The knee goes as far in each cycle as its foot (loosely in the first and last), it is still while the person
+    stands, and the drift changes slowly. A banded least-squares problem in the drift at the borders, solved once
+    for all axes.
 
-    Source: the statement is İkizoğlu et al. 2018, §3.3. Deviations: the drift is continuous instead of constant per cycle,
-    edge cycles count less, standing is used.
+    Source: the statement is İkizoğlu et al. 2018, §3.3. Deviations: the drift is continuous instead of constant per
+    cycle, edge cycles count less, standing is used.
     """
     borders = np.unique(
         np.concatenate([cycles.start, cycles.end, [row for span in standing for row in span]])
     )
     at = {int(row): k for k, row in enumerate(borders)}
-    raw_position = integrate(raw_velocity_mps, rate_hz)
+    raw_position = position_of(raw_velocity_mps, rate_hz)
     n = len(borders)
     band, right = np.zeros((2, n)), np.zeros((n, 3))
 
@@ -209,7 +213,7 @@ def track_knee(
 
 
 def _knee_motion(free: Motion, velocity: Floats, cycles: Cycles) -> KneeMotion:
-    position = integrate(velocity, free.rate_hz)
+    position = position_of(velocity, free.rate_hz)
     raw = free.raw_position_m
     excess = raw[cycles.end] - raw[cycles.start] - cycles.step_m
     # a velocity that was wrong when the cycle began is no fault of the cycle

@@ -1,6 +1,7 @@
 """What the motion stages hand on: offsets, rests, and how a foot or a knee moved.
 
-World frame: z up. Until ``frame.py`` has turned it, its heading is that of the orientation estimate, which is arbitrary.
+World frame: z up. Until ``frame.py`` has turned it, its heading is that of the orientation estimate, which is
+arbitrary.
 """
 
 from __future__ import annotations
@@ -135,7 +136,8 @@ class Motion:
 class FootMotion(Motion):
     """A foot: its rests are where its velocity is known.
 
-    ``displacement_sd_m`` (k − 1,) is the standard uncertainty of the horizontal displacement from each rest to the next.
+    ``displacement_sd_m`` (k − 1,) is the standard uncertainty of the horizontal displacement from each rest to the
+    next.
     """
 
     rests: Rests

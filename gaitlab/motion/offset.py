@@ -25,8 +25,8 @@ class StandingParams:
         Where the paper takes it, from the start of the recording.
     max_rate_sd_radps, max_acc_sd_mps2 : float
         Largest scatter of gyroscope and accelerometer (norm of the axes' standard deviations) of a foot that stands.
-        MTw noise alone gives 0.008 and 0.03; the 92 feet of ``mtw-10m-walk`` stay below 0.02 and 0.07 in their quietest
-        second, a foot in the flat of a slow stance does not.
+        MTw noise alone gives 0.008 and 0.03; the 92 feet of ``mtw-10m-walk`` stay below 0.02 and 0.07 in their
+        quietest second, a foot in the flat of a slow stance does not.
     """
 
     duration_s: float = 1.0
@@ -54,7 +54,8 @@ def find_standing(
     Returns
     -------
     start, end : int
-        Its rows ``[start, end)``: the paper's (2 s to 3 s) where the foot stands then, else the quietest of the recording.
+        Its rows ``[start, end)``: the paper's (2 s to 3 s) where the foot stands then, else the quietest of the
+        recording.
     standing : bool
         False where even the quietest second is not standing.
     """
@@ -68,14 +69,15 @@ def find_standing(
 
 
 def find_offsets(sensor: Sensor, acc: Floats, gyr: Floats, params: StandingParams | None = None) -> Offsets:
-    """Offsets of a sensor: gyroscope mean, and what the accelerometer reads beside one standard gravity, while standing.
+    """Offsets of a sensor: gyroscope mean, and what the accelerometer reads beside one standard gravity, while
+    standing.
 
-    Where nobody stands still, the gyroscope's offset cannot be told from movement and is left at zero (the orientation
-    filter still estimates it), and the accelerometer's is taken from the quietest second.
+    Where nobody stands still, the gyroscope's offset cannot be told from movement and is left at zero (the
+    orientation filter still estimates it), and the accelerometer's is taken from the quietest second.
 
-    Source: İkizoğlu et al. 2018, §3.2 (mean over 2–3 s). Deviations: (1) the offset is taken in the sensor's frame, where
-    it is constant, not in the world's; (2) gravity's size is part of it: of 92 real sensors 46 read more than 10.0 m/s²
-    at rest; (3) the gyroscope's offset is removed as well; (4) the second is searched for.
+    Source: İkizoğlu et al. 2018, §3.2 (mean over 2–3 s). Deviations: (1) the offset is taken in the sensor's frame,
+    where it is constant, not in the world's; (2) gravity's size is part of it: of 92 real sensors 46 read more than
+    10.0 m/s² at rest; (3) the gyroscope's offset is removed as well; (4) the second is searched for.
     """
     start, end, standing = find_standing(acc, gyr, sensor.rate_hz, params)
     mean_acc = acc[start:end].mean(axis=0)

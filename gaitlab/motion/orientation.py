@@ -21,8 +21,8 @@ def estimate(acc: Floats, gyr: Floats, rate_hz: float) -> Floats:
     """Orientation from accelerometer and gyroscope, offsets removed; shape (n, 4), heading arbitrary but continuous.
 
     Source: Laidig and Seel, "VQF: Highly accurate IMU orientation estimation with bias estimation and magnetic
-    disturbance rejection", Information Fusion 91 (2023) 187–204; the offline variant (forward and backward), six axes,
-    published parameters. The magnetometer is left out: indoors it turns the heading by tens of degrees.
+    disturbance rejection", Information Fusion 91 (2023) 187–204; the offline variant (forward and backward), six
+    axes, published parameters. The magnetometer is left out: indoors it turns the heading by tens of degrees.
     """
     result = offlineVQF(np.ascontiguousarray(gyr), np.ascontiguousarray(acc), None, 1.0 / rate_hz)
     attitude: Floats = result["quat6D"]

@@ -25,7 +25,8 @@ def multiply(p: Floats, q: Floats) -> Floats:
 
 def conjugate(q: Floats) -> Floats:
     """The inverse rotation of unit quaternions, shape (..., 4)."""
-    return q * np.array([1.0, -1.0, -1.0, -1.0])
+    inverse: Floats = q * np.array([1.0, -1.0, -1.0, -1.0])
+    return inverse
 
 
 def rotate(q: Floats, v: Floats) -> Floats:
@@ -43,7 +44,8 @@ def heading_rotation(yaw_rad: float) -> Floats:
 
 
 def twist_about_vertical(q: Floats) -> Floats:
-    """Heading part of each rotation in radians, shape (n,): the turn about the vertical in the swing-twist decomposition.
+    """Heading part of each rotation in radians, shape (n,): the turn about the vertical in the swing-twist
+    decomposition.
 
     Unlike a yaw angle it has no singularity at ±90° of pitch, as a sensor on the back of a foot stands.
     """
@@ -51,7 +53,8 @@ def twist_about_vertical(q: Floats) -> Floats:
 
 
 def angular_rate(q: Floats, rate_hz: float) -> Floats:
-    """Angular rate in the sensor frame, rad/s, shape (n, 3), from successive orientations; row i is the mean over (i − 1, i]."""
+    """Angular rate in the sensor frame, rad/s, shape (n, 3), from successive orientations; row i is the mean over
+    (i − 1, i]."""
     step = multiply(conjugate(q[:-1]), q[1:])
     step = step * np.where(step[:, :1] < 0, -1.0, 1.0)
     length = np.linalg.norm(step[:, 1:], axis=1)
@@ -59,3 +62,16 @@ def angular_rate(q: Floats, rate_hz: float) -> Floats:
     scale = np.divide(angle, length, out=np.full_like(angle, 2.0), where=length > 1e-12)
     rates = step[:, 1:] * scale[:, None] * rate_hz
     return np.vstack([rates[:1], rates]) if len(rates) else np.zeros((len(q), 3))
+
+
+def midway(q: Floats, gyr_radps: Floats, rate_hz: float) -> Floats:
+    """Orientation in the middle of each sample's interval, shape (n, 4).
+
+    A sample is the mean over the interval that ends with it, and so is its angular rate: the orientation half an
+    interval earlier is q ⊗ exp(−ω/(2·rate)/2). With a foot that turns at 8 rad/s, half an interval of 10 ms is 2°.
+    """
+    half = gyr_radps * (-0.25 / rate_hz)
+    step = np.concatenate([np.ones((len(q), 1)), half], axis=1)
+    product = multiply(q, step)
+    unit: Floats = product / np.linalg.norm(product, axis=1, keepdims=True)
+    return unit

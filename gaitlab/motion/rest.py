@@ -37,7 +37,8 @@ class RestParams:
     default_cycle_s : float
         Gait cycle assumed where the signal has no period.
     min_swing_rate_radps : float
-        Below this typical peak of the angular rate nothing is a swing: nobody walks. A shuffling foot reaches 1 rad/s.
+        Below this typical peak of the angular rate nothing is a swing: nobody walks. A shuffling foot reaches 1
+        rad/s.
     """
 
     window_cycles: float = 0.15
@@ -96,8 +97,8 @@ def unrest(
 ) -> Floats | None:
     """How far each row is from rest: about 1 in a typical swing, ``floor`` when still; None where nobody walks.
 
-    u = √(½·(W/W̃)² + ½·(A/Ã)² + floor²), W and A the moving RMS of angular rate and free acceleration over a share of the
-    gait cycle, W̃ and Ã their medians over the swings' peaks.
+    u = √(½·(W/W̃)² + ½·(A/Ã)² + floor²), W and A the moving RMS of angular rate and free acceleration over a share
+    of the gait cycle, W̃ and Ã their medians over the swings' peaks.
     """
     p = params or RestParams()
     cycle = cycle_time(rate_radps, rate_hz, p) or p.default_cycle_s
@@ -154,8 +155,8 @@ def find_rests(
     """Find the rests of a foot from its free acceleration and angular rate, both shape (n, 3), any axes.
 
     Every gait cycle has one quietest moment: it is found as a valley of the unrest that is deep against both its
-    neighbours, and the rest is the stretch around it that is nearly as quiet. Two valleys without a swing between them are
-    one rest. Residual velocities are zero here; the velocity stage fills them in.
+    neighbours, and the rest is the stretch around it that is nearly as quiet. Two valleys without a swing between
+    them are one rest. Residual velocities are zero here; the velocity stage fills them in.
 
     Ours. It replaces İkizoğlu et al. 2018, §3.3 (``ikizoglu2018.find_rests``), which finds 5 % of the stances in
     ``mtw-10m-walk``.
@@ -185,10 +186,11 @@ def no_rests() -> Rests:
 def restlessness(
     acceleration_mps2: Floats, rate_radps: Floats, rate_hz: float, params: RestParams | None = None
 ) -> float | None:
-    """Median over the gait cycles of the least unrest in each: how near to rest a sensor ever comes; None where nobody walks.
+    """Median over the gait cycles of the least unrest in each: how near to rest a sensor ever comes; None where
+    nobody walks.
 
-    0.05 to 0.10 for the 92 feet of ``mtw-10m-walk`` (0.05 is the floor), 0.14 and more for shanks, ankles and thighs in
-    ``mtw-leg-vicon``.
+    0.05 to 0.10 for the 92 feet of ``mtw-10m-walk`` (0.05 is the floor), 0.14 and more for shanks, ankles and
+    thighs in ``mtw-leg-vicon``.
     """
     p = params or RestParams()
     level = unrest(acceleration_mps2, rate_radps, rate_hz, p)

@@ -14,7 +14,8 @@ from gaitlab.recording.model import Floats, Sensor
 
 @dataclass(frozen=True, eq=False)
 class Signals:
-    """Specific force (n, 3), m/s², and angular rate (n, 3), rad/s, in the sensor's frame; which of them were derived."""
+    """Specific force (n, 3), m/s², and angular rate (n, 3), rad/s, in the sensor's frame; which of them were
+    derived."""
 
     acc_mps2: Floats
     gyr_radps: Floats
