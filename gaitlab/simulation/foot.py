@@ -23,11 +23,23 @@ from gaitlab.simulation.jet import Jet, Track, sin_cos
 from gaitlab.simulation.motion import Motion, Pose
 from gaitlab.simulation.walk import Person, leftward
 
-#: The foot speeds up over the first and slows down over the last part of the swing (shares of the swing).
-_SPEED_UP, _SLOW_DOWN = 0.38, 0.36
-#: After foot off the sole goes on tipping for this share of the swing, then turns back.
-_TIPPING = 0.17
-#: Waves of the shock at initial contact between contact and flat foot.
+# The shape of a gait cycle; tuned so that the angular rate about the pitch axis follows the median of 1,500
+# hand-checked swings of eight healthy adults from 0.3 s before to 0.25 s after foot off and initial contact.
+
+#: The foot speeds up over the first and slows down over the last part of its way (shares of the time it
+#: takes).
+_SPEED_UP, _SLOW_DOWN = 0.28, 0.45
+#: The tip of the shoe starts forward before it leaves the floor, the heel comes to rest after it has reached
+#: it (shares of the swing).
+_DRAG, _SLIP = 0.10, 0.07
+#: The heel rises fastest at this share of its rise before foot off.
+_FASTEST_RISE = 0.11
+#: The sole is tipped most soon after foot off, and the toes are highest shortly before contact (shares of
+#: swing).
+_AFTER_OFF, _BEFORE_CONTACT = 0.085, 0.085
+#: Rate at which the toes come down at initial contact, over the mean rate of the landing.
+_LANDING_RATE = 0.85
+#: Waves of the shock between initial contact and flat foot.
 _SHOCK_WAVES = 2.5
 #: Roll of the foot in swing, and rocking of the sensor by the shock (rad).
 _SWING_ROLL_RAD, _SHOCK_ROLL_RAD = 0.12, 0.012
@@ -92,11 +104,10 @@ class FootMotion:
         u = np.clip((t_s - falls.initial_contact_s[fall]) / length, 0.0, 1.0)
         zero = np.zeros_like(u)
         inner = Jet(u, np.where((u > 0.0) & (u < 1.0), 1.0 / length, 0.0), zero)
-        rest = 1.0 - u
+        g, slope, bend = u * (1.0 - u) ** 2, (1.0 - u) * (1.0 - 3.0 * u), 6.0 * u - 4.0
+        peak = (4.0 / 27.0) ** 3
         envelope = inner.through(
-            64.0 * (u * rest) ** 3,
-            192.0 * (u * rest) ** 2 * (rest - u),
-            384.0 * u * rest * ((rest - u) ** 2 - u * rest),
+            g**3 / peak, 3.0 * g**2 * slope / peak, (6.0 * g * slope**2 + 3.0 * g**2 * bend) / peak
         )
         return envelope * sin_cos(inner * (2.0 * np.pi * _SHOCK_WAVES))[0] * strength
 
@@ -129,8 +140,9 @@ def _swing_at(falls: Footfalls, t_s: Floats) -> tuple[np.ndarray, Bools]:
 
 
 def _between(falls: Footfalls, value: Floats) -> Track:
-    """Track that stays at ``value[k]`` during contact k and goes over to the next while the foot swings."""
-    start, swing = falls.foot_off_s[:-1], falls.initial_contact_s[1:] - falls.foot_off_s[:-1]
+    """Track that stays at ``value[k]`` while foot k rests and goes over to the next while the foot swings."""
+    swing = falls.initial_contact_s[1:] - falls.foot_off_s[:-1]
+    start, swing = falls.foot_off_s[:-1] - _DRAG * swing, (1.0 + _DRAG + _SLIP) * swing
     step = np.diff(value)
     speed = step / (swing * (1.0 - 0.5 * (_SPEED_UP + _SLOW_DOWN)))
     zero = np.zeros_like(step)
@@ -146,19 +158,21 @@ def _between(falls: Footfalls, value: Floats) -> Track:
 
 def _tip(falls: Footfalls) -> Track:
     """Pitch of the sole, toes up positive."""
-    gaits = falls.gaits[1:]
-    rise = falls.effort[1:] * np.array([gait.heel_rise_rad for gait in gaits])
+    gaits, zero = falls.gaits[1:], np.zeros(len(falls.gaits) - 1)
+    tip = falls.effort[1:] * np.array([gait.heel_rise_rad for gait in gaits])
     toe_up = falls.effort[1:] * np.array([gait.toe_up_rad for gait in gaits])
     landing = np.array([gait.landing_s for gait in gaits])
     heel_off, foot_off, contact = falls.heel_off_s[:-1], falls.foot_off_s[:-1], falls.initial_contact_s[1:]
-    rising, swing = foot_off - heel_off, contact - foot_off
-    speed, tipping = 2.0 * rise / rising, _TIPPING * swing
-    zero = np.zeros_like(rise)
+    rise, swing = foot_off - heel_off, contact - foot_off
+    rising, slowing = (1.0 - _FASTEST_RISE) * rise, _FASTEST_RISE * rise + _AFTER_OFF * swing
+    speed = tip / (0.4 * rising + 0.6 * slowing)
+    before, dropping = _BEFORE_CONTACT * swing, _LANDING_RATE * toe_up / landing
     columns = [
         (heel_off, zero, zero, zero),
-        (foot_off, -rise, -speed, 4.0 * rise / rising**2),
-        (foot_off + tipping, -rise - 0.42 * speed * tipping, zero, speed / tipping),
-        (contact, toe_up, zero, -2.0 * toe_up / landing**2),
+        (heel_off + rising, -0.4 * speed * rising, -speed, zero),
+        (foot_off + _AFTER_OFF * swing, -tip, zero, 1.1 * speed / slowing),
+        (contact - before, toe_up + 0.5 * dropping * before, zero, -dropping / before),
+        (contact, toe_up, -dropping, -dropping / before),
         (contact + landing, zero, zero, zero),
     ]
     knots, values, rates, bends = (np.column_stack(column).ravel() for column in zip(*columns, strict=True))

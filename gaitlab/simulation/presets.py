@@ -15,14 +15,14 @@ COMFORTABLE = Gait()
 FAST = Gait(
     stride_length_m=1.60, stride_time_s=0.92, stance_share=0.59, heel_strike_mps2=60.0, toe_up_rad=0.42
 )
-SLOW = Gait(stride_length_m=0.80, stride_time_s=1.60, stance_share=0.68, heel_rise_rad=0.6, toe_up_rad=0.18)
+SLOW = Gait(stride_length_m=0.80, stride_time_s=1.60, stance_share=0.68, heel_rise_rad=0.8, toe_up_rad=0.18)
 #: Short steps, hardly any roll of the foot: what Parkinson's disease or deep cerebral changes look like.
 SHUFFLING = Gait(
     stride_length_m=0.45,
     stride_time_s=0.95,
     step_width_m=0.14,
     stance_share=0.72,
-    heel_rise_rad=0.25,
+    heel_rise_rad=0.35,
     toe_up_rad=0.06,
     lift_m=0.012,
     heel_strike_mps2=8.0,
@@ -35,7 +35,7 @@ LIMPING = Gait(
     stance_share=0.66,
     length_asymmetry=0.12,
     time_asymmetry=0.08,
-    heel_rise_rad=0.6,
+    heel_rise_rad=0.8,
     circumduction_m=0.05,
     variability=0.02,
 )
@@ -49,7 +49,7 @@ def timed_25_foot_walk(gait: Gait = COMFORTABLE) -> Plan:
 
 def ten_metre_and_back(gait: Gait = COMFORTABLE) -> Plan:
     """Stand, walk 10 m, turn by 180°, walk back, stop."""
-    return Plan((Stand(4.0), Walk(10.0), _about(gait), Walk(10.0), Stand(3.0)), gait)
+    return Plan((Stand(4.0), Walk(10.0), _turn(math.pi, gait), Walk(10.0), Stand(3.0)), gait)
 
 
 def stop_and_go(gait: Gait = COMFORTABLE) -> Plan:
@@ -59,13 +59,13 @@ def stop_and_go(gait: Gait = COMFORTABLE) -> Plan:
 
 def square(gait: Gait = COMFORTABLE, side_m: float = 5.0, *, to: Side = Side.LEFT) -> Plan:
     """Once around a square, back to where it began, with quarter turns to one side."""
-    quarter = Turn(math.pi / 2 if to is Side.LEFT else -math.pi / 2, n_steps=2, step_length_m=0.3)
+    quarter = _turn(math.pi / 2 if to is Side.LEFT else -math.pi / 2, gait)
     return Plan((Stand(3.0), *(Walk(side_m), quarter) * 4, Stand(2.0)), gait)
 
 
 def long_walk(minutes: float, gait: Gait = COMFORTABLE, length_m: float = 30.0) -> Plan:
     """Up and down a corridor for about so many minutes."""
-    turn = _about(gait)
+    turn = _turn(math.pi, gait)
     strides = length_m / gait.stride_length_m + turn.steps / 2
     laps = max(1, round(minutes * 60.0 / (strides * gait.stride_time_s)))
     return Plan((Stand(5.0), *(Walk(length_m), turn) * laps, Stand(3.0)), gait)
@@ -80,6 +80,7 @@ def example_walk(seed: int = 0) -> Simulation:
     )
 
 
-def _about(gait: Gait) -> Turn:
-    """Half a turn; who makes short steps needs twice as many of them."""
-    return Turn(math.pi, n_steps=8 if gait.stride_length_m < 0.7 else 4)
+def _turn(angle_rad: float, gait: Gait) -> Turn:
+    """A turn of 45° a step; who makes short steps needs twice as many of them."""
+    a_step = math.pi / 8 if gait.stride_length_m < 0.7 else math.pi / 4
+    return Turn(angle_rad, n_steps=math.ceil(abs(angle_rad) / a_step - 1e-9))

@@ -90,11 +90,11 @@ class Gait:
     step_width_m: float = 0.10
     toe_out_rad: float = 0.10
     stance_share: float = 0.62
-    landing_share: float = 0.085
-    heel_off_share: float = 0.21
-    toe_up_rad: float = 0.32
-    heel_rise_rad: float = 0.85
-    lift_m: float = 0.035
+    landing_share: float = 0.10
+    heel_off_share: float = 0.25
+    toe_up_rad: float = 0.30
+    heel_rise_rad: float = 1.1
+    lift_m: float = 0.045
     circumduction_m: float = 0.015
     heel_strike_mps2: float = 25.0
     length_asymmetry: float = 0.0
