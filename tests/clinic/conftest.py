@@ -10,15 +10,16 @@ from gaitlab.clinic import accounts
 from gaitlab.clinic.access import Principal, Role
 from gaitlab.clinic.clinic import Clinic, ClinicSettings
 from tests.clinic.people import Clock, add_person, add_site
-from tests.databases import database_url, raw
+from tests.databases import migrated_url, postgresql_template, raw
 
-__all__ = ["database_url"]
+__all__ = ["migrated_url", "postgresql_template"]
 
 
 @pytest.fixture
-def clinic(database_url: str, tmp_path: Path) -> Iterator[Clinic]:
+def clinic(migrated_url: str, tmp_path: Path) -> Iterator[Clinic]:
     """A clinic on a new database of each kind, with a clock that goes when told."""
-    clinic = Clinic.open(ClinicSettings(tmp_path / "data", database_url))
+    limits = {"attempts_per_account": 4, "attempts_per_address": 6}
+    clinic = Clinic.open(ClinicSettings(tmp_path / "data", migrated_url, **limits))
     clinic.now = Clock()
     yield clinic
     clinic.close()

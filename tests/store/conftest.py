@@ -6,10 +6,11 @@ from pathlib import Path
 import pytest
 from sqlalchemy import Engine
 
-from gaitlab.store.database import open_engine
-from tests.databases import database_url
+from gaitlab.store import schema
+from gaitlab.store.database import Database, open_engine
+from tests.databases import database_url, migrated_url, postgresql_template
 
-__all__ = ["database_url"]
+__all__ = ["database_url", "migrated_url", "postgresql_template"]
 
 
 @pytest.fixture
@@ -17,4 +18,13 @@ def engine(database_url: str, tmp_path: Path) -> Iterator[Engine]:
     """An engine on an empty database."""
     engine = open_engine(database_url, tmp_path)
     yield engine
+    engine.dispose()
+
+
+@pytest.fixture
+def db(migrated_url: str, tmp_path: Path) -> Iterator[Database]:
+    """A database at head."""
+    engine = open_engine(migrated_url, tmp_path)
+    schema.migrate(engine)
+    yield Database(engine)
     engine.dispose()

@@ -4,9 +4,8 @@ import datetime as dt
 import threading
 
 import pytest
-from sqlalchemy import Engine
 
-from gaitlab.store import audit, schema
+from gaitlab.store import audit
 from gaitlab.store.audit import Actor, ChainReport, Event
 from gaitlab.store.database import Database
 from tests.databases import raw
@@ -14,12 +13,6 @@ from tests.databases import raw
 KEY = b"k" * 32
 NOW = dt.datetime(2026, 11, 21, 10, 0, 0, 5, tzinfo=dt.UTC)
 ALICE = Actor("person", "alice", "clinician", "site", "c1", "192.0.2.0/24", "r1")
-
-
-@pytest.fixture
-def db(engine: Engine) -> Database:
-    schema.migrate(engine)
-    return Database(engine)
 
 
 def write(db: Database, *actions: str, key: bytes = KEY) -> None:

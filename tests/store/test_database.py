@@ -6,7 +6,7 @@ import threading
 from pathlib import Path
 
 import pytest
-from sqlalchemy import Engine, func, select, update
+from sqlalchemy import func, select, update
 from sqlalchemy.exc import StatementError
 
 import gaitlab
@@ -15,12 +15,6 @@ from gaitlab.store import database, schema
 from gaitlab.store.base import ID_PATTERN, new_id
 from gaitlab.store.database import Database, journal_settings, normalised_url, open_engine
 from gaitlab.store.people import Account, Site
-
-
-@pytest.fixture
-def db(engine: Engine) -> Database:
-    schema.migrate(engine)
-    return Database(engine)
 
 
 def add_site(
