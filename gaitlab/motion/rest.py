@@ -6,10 +6,9 @@ import itertools
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.fft import irfft, next_fast_len, rfft
-from scipy.ndimage import uniform_filter1d
-from scipy.signal import find_peaks
+from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
+from gaitlab.motion.extrema import prominent_peaks
 from gaitlab.motion.model import Rests
 from gaitlab.recording.model import Floats
 
@@ -71,13 +70,13 @@ def cycle_time(rate_radps: Floats, rate_hz: float, params: RestParams | None = N
     shortest = round(p.cycle_range_s[0] * rate_hz)
     if longest <= shortest + 2:
         return None
-    n_fft = next_fast_len(len(signal) + longest)
-    spectrum = rfft(signal, n_fft)
-    correlation = irfft(np.abs(spectrum) ** 2, n_fft)[: longest + 1]
+    n_fft = 1 << (len(signal) + longest - 1).bit_length()
+    spectrum = np.fft.rfft(signal, n_fft)
+    correlation = np.fft.irfft(np.abs(spectrum) ** 2, n_fft)[: longest + 1]
     if correlation[0] <= 0:
         return None
     correlation = correlation / correlation[0] / (1.0 - np.arange(longest + 1) / len(signal))
-    peaks, _ = find_peaks(correlation[shortest:], prominence=0.05)
+    peaks = prominent_peaks(correlation[shortest:], 0.05)
     if not len(peaks):
         return None
     peaks = peaks + shortest
@@ -87,9 +86,11 @@ def cycle_time(rate_radps: Floats, rate_hz: float, params: RestParams | None = N
     return float(high[0] / rate_hz)
 
 
-def _typical_swing(unrest: Floats, distance: int) -> float:
-    peaks, _ = find_peaks(unrest, distance=distance, height=0.3 * np.percentile(unrest, 98))
-    return float(np.median(unrest[peaks])) if len(peaks) else float(unrest.max(initial=0.0))
+def _typical_swing(level: Floats, distance: int) -> float:
+    """Median of the peaks that are the highest within ``distance`` rows and not mere standing."""
+    highest = maximum_filter1d(level, 2 * distance + 1, mode="nearest")
+    peaks = (level == highest) & (level >= 0.3 * np.percentile(level, 98))
+    return float(np.median(level[peaks])) if peaks.any() else float(level.max(initial=0.0))
 
 
 def unrest(
@@ -125,11 +126,9 @@ class _Valley:
 
 def _one_per_cycle(level: Floats, params: RestParams) -> list[_Valley]:
     """Valleys of the unrest, one between every two swings."""
-    edge = np.log(params.prominence) + 10.0
-    quiet = np.concatenate([[-edge], -np.log(level), [-edge]])
-    candidates, _ = find_peaks(quiet, prominence=np.log(params.prominence))
+    candidates = prominent_peaks(-np.log(level), float(np.log(params.prominence)))
     kept: list[_Valley] = []
-    for row in (int(c) - 1 for c in candidates):
+    for row in map(int, candidates):
         if kept and level[kept[-1].last : row].max() < params.swing:
             one = kept[-1]
             deepest = row if level[row] < level[one.moment] else one.moment

@@ -1,0 +1,207 @@
+"""Which commands and options there are. What they do lies in the other files of this folder, loaded when needed."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from gaitlab import __version__
+
+if TYPE_CHECKING:
+    Commands = argparse._SubParsersAction[argparse.ArgumentParser]
+
+METHODS = ("gaitlab", "ikizoglu2018")
+PLACEMENTS = ("left_foot", "right_foot", "left_knee", "right_knee")
+
+
+def build_parser() -> argparse.ArgumentParser:
+    """The parser of the whole command line; each command carries its function as ``run``."""
+    parser = argparse.ArgumentParser(
+        prog="gaitlab", description="Clinical gait analysis from inertial sensors on feet and knees."
+    )
+    parser.add_argument("--version", action="version", version=f"gaitlab {__version__}")
+    commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
+    _analyze(commands)
+    _doctor(commands)
+    _demo(commands)
+    _serve(commands)
+    _user(commands)
+    _token(commands)
+    _db(commands)
+    _audit(commands)
+    return parser
+
+
+def _late(module: str, function: str) -> Callable[[argparse.Namespace], int]:
+    """A function of this folder, imported when it is run: ``gaitlab --help`` should not load scipy."""
+
+    def run(chosen: argparse.Namespace) -> int:
+        status: int = getattr(importlib.import_module(f"gaitlab.cli.{module}"), function)(chosen)
+        return status
+
+    return run
+
+
+def _analyze(commands: Commands) -> None:
+    command = commands.add_parser(
+        "analyze",
+        help="analyse the recording of a walk",
+        description="Analyse the recording of a walk and print its parameters. Where no placement is given it comes from"
+        " file names, headers or a placement.json.",
+    )
+    command.add_argument(
+        "paths", nargs="*", metavar="PATH", help="a folder, a zip, or the files of one recording"
+    )
+    for placement in PLACEMENTS:
+        option = f"--{placement.replace('_', '-')}"
+        command.add_argument(option, metavar="FILE", help=f"file of the {placement.replace('_', ' ')}")
+    command.add_argument(
+        "--rate", type=_positive, metavar="HZ", help="sampling rate, where the files do not tell it"
+    )
+    command.add_argument(
+        "--course", type=_positive, metavar="M", help="length of the timed course in metres (7.62: T25-FW)"
+    )
+    command.add_argument("--method", choices=METHODS, default=METHODS[0], help="default: %(default)s")
+    command.add_argument(
+        "--out", metavar="result.json", help="write the result as JSON; - for standard output"
+    )
+    command.add_argument(
+        "--series", type=Path, metavar="DIR", help="write the time series as CSV files into DIR"
+    )
+    command.add_argument(
+        "--report",
+        type=_report_path,
+        action="append",
+        default=[],
+        metavar="out.html|out.pdf",
+        help="write a report",
+    )
+    command.set_defaults(run=_late("analyze", "run"), usage_error=command.error)
+
+
+def _doctor(commands: Commands) -> None:
+    command = commands.add_parser(
+        "doctor",
+        help="tell what a file is, how good it is, and what that means for a result",
+        description="Tell what each file is: format, rate, clock, gaps, losses, saturation, units, missing columns, and what"
+        " each means for a result. Exit status 1 if any of them cannot be used.",
+    )
+    command.add_argument("files", nargs="+", metavar="FILE", help="a recording's file, a folder or a zip")
+    command.add_argument(
+        "--rate", type=_positive, metavar="HZ", help="sampling rate, where the file does not tell it"
+    )
+    command.add_argument("--json", action="store_true", help="print JSON")
+    command.set_defaults(run=_late("doctor", "run"))
+
+
+def _demo(commands: Commands) -> None:
+    command = commands.add_parser(
+        "demo",
+        help="make an example session, analyse it, store it and write its report",
+        description="Simulate a timed 25-foot walk, write it as MT Manager files, read them like any others, analyse and"
+        " store them, and write report.html, report.pdf and result.json.",
+    )
+    command.add_argument(
+        "--dir", type=Path, default=Path("gaitlab-demo"), help="where to put it all (default: %(default)s)"
+    )
+    command.add_argument("--serve", action="store_true", help="then serve the pages on this machine")
+    command.add_argument("--port", type=_port, default=8000, help="default: %(default)s")
+    command.set_defaults(run=_late("demo", "run"))
+
+
+def _serve(commands: Commands) -> None:
+    command = commands.add_parser(
+        "serve",
+        help="serve the pages and the REST interface",
+        description="Serve the pages and the REST interface. The first start prints a one-time code for the first account."
+        " Environment: GAITLAB_DATA_DIR (default gaitlab-data), GAITLAB_DATABASE_URL (default SQLite there).",
+    )
+    command.add_argument("--host", default="127.0.0.1", help="default: %(default)s, this machine only")
+    command.add_argument("--port", type=_port, default=8000, help="default: %(default)s")
+    command.add_argument(
+        "--behind-proxy", action="store_true", help="a proxy on this machine speaks TLS for us"
+    )
+    command.set_defaults(run=_late("admin", "serve"))
+
+
+def _user(commands: Commands) -> None:
+    actions = commands.add_parser("user", help="accounts").add_subparsers(required=True, metavar="ACTION")
+    add = actions.add_parser(
+        "add", help="add an account; the password is asked for, or read from standard input"
+    )
+    add.add_argument("email")
+    add.add_argument("--name", required=True)
+    roles = ("admin", "clinician", "engineer", "reader")
+    add.add_argument(
+        "--role", action="append", choices=roles, required=True, help="may be given more than once"
+    )
+    add.set_defaults(run=_late("admin", "user_add"))
+    actions.add_parser("list", help="list the accounts").set_defaults(run=_late("admin", "user_list"))
+    disable = actions.add_parser("disable", help="end an account and its sessions and tokens")
+    disable.add_argument("email")
+    disable.set_defaults(run=_late("admin", "user_disable"))
+    password = actions.add_parser("password", help="set a new password")
+    password.add_argument("email")
+    password.set_defaults(run=_late("admin", "user_password"))
+
+
+def _token(commands: Commands) -> None:
+    actions = commands.add_parser("token", help="API tokens").add_subparsers(required=True, metavar="ACTION")
+    add = actions.add_parser("add", help="make a token for an account; it is shown this once")
+    add.add_argument("email", help="whose rights it borrows")
+    add.add_argument("--name", required=True, help="what it is for")
+    add.add_argument(
+        "--scope", action="append", help="permission such as session:write; default: all that REST needs"
+    )
+    add.add_argument(
+        "--days", type=int, default=90, help="until it expires (default: %(default)s, at most 365)"
+    )
+    add.set_defaults(run=_late("admin", "token_add"))
+    actions.add_parser("list", help="list the tokens").set_defaults(run=_late("admin", "token_list"))
+    revoke = actions.add_parser("revoke", help="end a token at once")
+    revoke.add_argument("id")
+    revoke.set_defaults(run=_late("admin", "token_revoke"))
+
+
+def _db(commands: Commands) -> None:
+    actions = commands.add_parser("db", help="the database").add_subparsers(required=True, metavar="ACTION")
+    actions.add_parser("upgrade", help="bring its tables to this version").set_defaults(
+        run=_late("admin", "db_upgrade")
+    )
+    actions.add_parser("status", help="say where it stands").set_defaults(run=_late("admin", "db_status"))
+    actions.add_parser("sweep", help="remove contents that a crash left without a row").set_defaults(
+        run=_late("admin", "db_sweep")
+    )
+
+
+def _audit(commands: Commands) -> None:
+    actions = commands.add_parser("audit", help="the audit trail").add_subparsers(
+        required=True, metavar="ACTION"
+    )
+    actions.add_parser("verify", help="recompute its chain of hashes").set_defaults(
+        run=_late("admin", "audit_verify")
+    )
+
+
+def _positive(text: str) -> float:
+    value = float(text)
+    if not 0.0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"{text} is not a number above zero")
+    return value
+
+
+def _port(text: str) -> int:
+    value = int(text)
+    if not 1 <= value <= 65535:
+        raise argparse.ArgumentTypeError(f"{text} is not a port from 1 to 65535")
+    return value
+
+
+def _report_path(text: str) -> Path:
+    path = Path(text)
+    if path.suffix.lower() not in (".html", ".pdf"):
+        raise argparse.ArgumentTypeError(f"{text} ends neither in .html nor in .pdf")
+    return path
