@@ -1,0 +1,110 @@
+"""Start the server the way a clinic can leave it running."""
+
+from __future__ import annotations
+
+import ipaddress
+import logging
+import sys
+
+import uvicorn
+
+from api.app import create_app
+from api.settings import WebSettings
+from gaitlab.clinic import accounts
+from gaitlab.clinic.clinic import Clinic
+from gaitlab.clinic.settings import ClinicSettings
+from gaitlab.errors import Misconfigured
+
+
+def serve(
+    settings: ClinicSettings,
+    host: str = "127.0.0.1",
+    port: int = 8000,
+    behind_proxy: bool = False,
+    *,
+    web: WebSettings | None = None,
+) -> None:
+    """Open the clinic and answer until stopped; prints the one-time code where there is no account yet.
+
+    Parameters
+    ----------
+    behind_proxy : bool
+        A proxy on this machine speaks TLS: its ``X-Forwarded-For`` is believed, cookies are ``Secure``.
+
+    Raises
+    ------
+    Misconfigured
+        If ``host`` is reachable from other machines and there is no account yet, or no proxy that speaks TLS.
+    """
+    web = web or WebSettings.from_environment()
+    if behind_proxy and not web.behind_tls:
+        web = WebSettings(True, web.allowed_hosts, web.small_body_bytes)
+    clinic = Clinic.open(settings)
+    try:
+        check_exposure(host, behind_proxy=behind_proxy, has_account=not accounts.needs_setup(clinic))
+        _announce(clinic, host, port)
+        _log_to_stderr()
+        uvicorn.run(
+            create_app(clinic, web),
+            host=host,
+            port=port,
+            log_config=None,
+            access_log=False,  # it would write URLs; api.middleware writes the route's template
+            server_header=False,
+            proxy_headers=behind_proxy,
+            forwarded_allow_ips="127.0.0.1,::1",
+        )
+    finally:
+        clinic.close()
+
+
+def check_exposure(host: str, *, behind_proxy: bool, has_account: bool) -> None:
+    """Refuse to be reachable from other machines without an account and without TLS in front.
+
+    Raises
+    ------
+    Misconfigured
+        With what to do first.
+    """
+    if _is_loopback(host):
+        return
+    if not has_account:
+        raise Misconfigured(
+            "no_account",
+            f"{host} can be reached from other machines, and this installation has no account yet.",
+            "Start on 127.0.0.1, create the first account there, and start again.",
+        )
+    if not behind_proxy:
+        raise Misconfigured(
+            "no_tls",
+            f"{host} can be reached from other machines, and gaitlab itself does not speak TLS.",
+            "Put a proxy that speaks TLS in front and say --behind-proxy, or stay on 127.0.0.1.",
+        )
+
+
+def _is_loopback(host: str) -> bool:
+    if host == "localhost":
+        return True
+    try:
+        return ipaddress.ip_address(host.strip("[]")).is_loopback
+    except ValueError:
+        return False
+
+
+def _announce(clinic: Clinic, host: str, port: int) -> None:
+    shown = f"[{host}]" if ":" in host else host
+    code = accounts.setup_code(clinic)
+    print(f"gaitlab is at http://{shown}:{port}/", file=sys.stderr)
+    if code is not None:
+        lines = (
+            "There is no account yet. Create the first one within 24 hours:",
+            f"  page   http://{shown}:{port}/setup",
+            f"  code   {code}",
+        )
+        print("\n".join(lines), file=sys.stderr, flush=True)
+
+
+def _log_to_stderr() -> None:
+    handler = logging.StreamHandler(sys.stderr)
+    handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(name)s %(message)s"))
+    logging.basicConfig(level=logging.INFO, handlers=[handler])

@@ -1,0 +1,248 @@
+// The upload form: looks at the files as soon as they are chosen, shows what each is, and says how far sending is.
+// Without this file the form still works: the server finds the placements and asks where it cannot.
+"use strict";
+
+(() => {
+  const form = document.querySelector("[data-session-form]");
+  const area = document.querySelector("[data-upload]");
+  if (!form || !area) return;
+
+  const input = area.querySelector("input[type=file]");
+  const drop = area.querySelector("[data-drop]");
+  const status = area.querySelector("[data-status]");
+  const problemSlot = area.querySelector("[data-problem]");
+  const table = area.querySelector("[data-placements]");
+  const rows = area.querySelector("[data-rows]");
+  const rowTemplate = document.querySelector("template[data-row]");
+  const noticeTemplate = document.querySelector("template[data-notice]");
+  const submit = form.querySelector("[data-submit]");
+  const sending = form.querySelector("[data-sending]");
+  const progress = form.querySelector("[data-progress]");
+  const sent = form.querySelector("[data-sent]");
+  const token = form.elements.form_token.value;
+  let chosen = [...input.files];
+  let asked = 0;
+
+  drop.classList.add("live");
+  const again = area.querySelector(".again");
+
+  // ---- choosing -------------------------------------------------------------------------------------------------
+  input.addEventListener("change", () => take([...input.files]));
+  for (const kind of ["dragenter", "dragover"]) {
+    drop.addEventListener(kind, (event) => {
+      event.preventDefault();
+      drop.classList.add("over");
+    });
+  }
+  for (const kind of ["dragleave", "drop"]) drop.addEventListener(kind, () => drop.classList.remove("over"));
+  drop.addEventListener("drop", (event) => {
+    event.preventDefault();
+    take([...event.dataTransfer.files]);
+  });
+
+  function take(files) {
+    const names = new Set(files.map((file) => file.name));
+    chosen = [...chosen.filter((file) => !names.has(file.name)), ...files];
+    keep();
+    inspect();
+  }
+
+  function keep() {
+    const transfer = new DataTransfer();
+    for (const file of chosen) transfer.items.add(file);
+    input.files = transfer.files;
+  }
+
+  // ---- looking --------------------------------------------------------------------------------------------------
+  async function inspect() {
+    const turn = ++asked;
+    const earlier = placements();
+    clearProblem();
+    if (again) again.hidden = true;
+    if (!chosen.length) return show([], earlier, "");
+    status.textContent = `Reading ${count(chosen.length)} …`;
+    const data = new FormData();
+    for (const file of chosen) data.append("files", file);
+    let answer;
+    try {
+      const response = await fetch(area.dataset.inspect, {
+        method: "POST",
+        body: data,
+        headers: { Accept: "application/json", "X-Form-Token": token },
+      });
+      answer = await response.json();
+      if (turn !== asked) return;
+      if (!response.ok) return refuse(answer, earlier);
+    } catch {
+      if (turn === asked) refuse({ detail: "The server cannot be reached.", hint: "Check the connection, then choose the files again." }, earlier);
+      return;
+    }
+    show(answer.files, earlier, said(answer.files));
+  }
+
+  function refuse(problem, earlier) {
+    show(
+      chosen.map((file) => ({ name: file.name, unread: true })),
+      earlier,
+      "A file cannot be used. Nothing was stored.",
+    );
+    tell(problem);
+  }
+
+  function said(files) {
+    const open = files.filter((file) => !file.placement && !file.left_out).length;
+    if (open) return `${count(files.length)} read. Say where ${open === 1 ? "one sensor was" : `${open} sensors were`} worn.`;
+    return `${count(files.length)} read. Check where each sensor was worn.`;
+  }
+
+  function show(files, earlier, words) {
+    rows.replaceChildren(...files.map((file, index) => row(file, index, earlier)));
+    table.hidden = !files.length;
+    status.textContent = words;
+  }
+
+  function row(file, index, earlier) {
+    const made = rowTemplate.content.firstElementChild.cloneNode(true);
+    made.dataset.file = file.name;
+    made.querySelector("[data-name]").textContent = file.name;
+    made.querySelector("[name=placed_name]").value = file.name;
+    made.querySelector("[data-device]").textContent = file.device || "–";
+    made.querySelector("[data-recorded]").textContent = recorded(file);
+    const select = made.querySelector("select");
+    select.id = `placed-${index}`;
+    select.setAttribute("aria-label", `Placement of ${file.name}`);
+    if (file.unread) {
+      for (const control of made.querySelectorAll("[name]")) control.disabled = true;
+      return withRemove(made, file);
+    }
+    const told = file.placement || (file.left_out ? "not_used" : "");
+    select.value = earlier.get(file.name) || told;
+    made.querySelector("[data-why]").textContent = select.value === told ? file.why : "";
+    select.addEventListener("change", () => {
+      made.querySelector("[data-why]").textContent = "";
+    });
+    return withRemove(made, file);
+  }
+
+  function withRemove(made, file) {
+    if (!chosen.some((one) => one.name === file.name)) return made;
+    const button = document.createElement("button");
+    button.type = "button";
+    button.className = "quiet small";
+    button.textContent = "Remove";
+    button.setAttribute("aria-label", `Remove ${file.name}`);
+    button.addEventListener("click", () => {
+      chosen = chosen.filter((one) => one.name !== file.name);
+      keep();
+      inspect();
+      input.focus();
+    });
+    made.querySelector("th").append(" ", button);
+    return made;
+  }
+
+  function recorded(file) {
+    if (file.unread) return "not read";
+    const parts = [];
+    if (file.rate_hz) parts.push(`${(file.samples / file.rate_hz).toFixed(1)} s at ${Number(file.rate_hz.toFixed(1))} Hz`);
+    else parts.push(`${file.samples} samples`);
+    if (file.lost_share > 0) parts.push(`${(100 * file.lost_share).toFixed(1)} % lost`);
+    return parts.join(", ");
+  }
+
+  function placements() {
+    const found = new Map();
+    for (const select of rows.querySelectorAll("select")) {
+      const name = select.closest("tr").querySelector("[name=placed_name]").value;
+      if (select.value) found.set(name, select.value);
+    }
+    return found;
+  }
+
+  // ---- course length follows the test, until it is typed -------------------------------------------------------------
+  const test = form.querySelector("[data-test]");
+  const course = form.elements.course_m;
+  if (test && course) {
+    const usual = () => test.selectedOptions[0].dataset.course;
+    let ours = !course.value;
+    if (ours) course.value = usual();
+    course.addEventListener("input", () => {
+      ours = course.value === "";
+    });
+    test.addEventListener("change", () => {
+      if (ours) course.value = usual();
+    });
+  }
+
+  // ---- sending --------------------------------------------------------------------------------------------------
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    if (submit.disabled) return;
+    clearProblem();
+    const request = new XMLHttpRequest();
+    request.open("POST", form.action);
+    request.setRequestHeader("Accept", "application/json");
+    request.responseType = "json";
+    request.upload.addEventListener("progress", (step) => {
+      if (!step.lengthComputable) return;
+      progress.value = (100 * step.loaded) / step.total;
+      sent.textContent = step.loaded < step.total ? `Sending, ${Math.round(progress.value)} %` : "Analysing …";
+    });
+    request.addEventListener("load", () => {
+      if (request.status === 201) {
+        window.location.assign(request.response.location);
+        return;
+      }
+      if (request.status === 401) {
+        window.location.assign(`/login?next=${encodeURIComponent(window.location.pathname)}`);
+        return;
+      }
+      busy(false);
+      tell(request.response || { detail: "The server refused the upload.", hint: "Try again." });
+    });
+    request.addEventListener("error", () => {
+      busy(false);
+      tell({ detail: "The connection broke off; nothing may have been stored.", hint: "Press the button again: the same walk is never stored twice." });
+    });
+    busy(true);
+    request.send(new FormData(form));
+  });
+
+  window.addEventListener("pageshow", () => busy(false));
+
+  function busy(on) {
+    submit.disabled = on;
+    sending.hidden = !on;
+    progress.value = 0;
+    sent.textContent = on ? "Sending …" : "";
+  }
+
+  // ---- saying what is wrong ---------------------------------------------------------------------------------------
+  function clearProblem() {
+    problemSlot.replaceChildren();
+    for (const marked of form.querySelectorAll("[aria-invalid]")) marked.removeAttribute("aria-invalid");
+    for (const marked of rows.querySelectorAll(".wrong")) marked.classList.remove("wrong");
+  }
+
+  function tell(problem) {
+    const notice = noticeTemplate.content.firstElementChild.cloneNode(true);
+    const where = [problem.file, problem.line && `line ${problem.line}`, problem.column && problem.file && `column ${problem.column}`];
+    notice.querySelector("[data-place]").textContent = where.filter(Boolean).join(", ");
+    notice.querySelector("[data-detail]").textContent = problem.detail || "Something went wrong.";
+    notice.querySelector("[data-hint]").textContent = problem.hint || "";
+    problemSlot.replaceChildren(notice);
+    const field = !problem.file && problem.column ? form.elements[problem.column] : null;
+    if (field && field.setAttribute) {
+      field.setAttribute("aria-invalid", "true");
+      field.focus();
+    }
+    for (const one of rows.children) one.classList.toggle("wrong", Boolean(problem.file) && one.dataset.file === problem.file);
+    problemSlot.scrollIntoView({ block: "nearest" });
+  }
+
+  function count(n) {
+    return n === 1 ? "1 file" : `${n} files`;
+  }
+
+  if (chosen.length) inspect();
+})();
