@@ -22,12 +22,12 @@ from gaitlab.result import (
     Provenance,
     Rest,
     Result,
+    ResultWarning,
     SensorQuality,
     Stride,
     TimedWalk,
     Turn,
     Walk,
-    Warning_,
     settings_sha256,
 )
 from gaitlab.series import SensorSeries, Series
@@ -224,7 +224,7 @@ def result(
     knees: bool = True,
     *,
     chosen: tuple[Parameter, ...] | None = None,
-    warnings: tuple[Warning_, ...] = (),
+    warnings: tuple[ResultWarning, ...] = (),
     names: dict[str, str] | None = None,
 ) -> Result:
     """The result that belongs to ``series``."""

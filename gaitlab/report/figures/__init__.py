@@ -53,9 +53,12 @@ FIGURES: Mapping[str, Maker] = MappingProxyType(
 """Every figure by its name, in the order of the report."""
 
 
-def figures(result: Result, series: Series) -> list[Figure]:
-    """All figures that this trial has data for, in the order of ``FIGURES``."""
-    scene = Scene(result, series)
+def figures(result: Result, series: Series, *, prefix: str = "") -> list[Figure]:
+    """All figures that this trial has data for, in the order of ``FIGURES``.
+
+    ``prefix`` begins every id inside the pictures: give each trial its own where several stand in one page.
+    """
+    scene = Scene(result, series, prefix)
     made = (make(scene) for make in FIGURES.values())
     return [figure for figure in made if figure is not None]
 

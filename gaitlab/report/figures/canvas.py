@@ -25,6 +25,7 @@ from matplotlib.transforms import IdentityTransform
 
 from gaitlab.recording.model import Floats
 from gaitlab.report.figures.decimate import envelope, spans
+from gaitlab.report.figures.model import Figure, Scene
 from gaitlab.report.figures.style import INK, LOST_KEY, MUTED, REST_KEY, RULE, SMALL_PT, TEXT_PT, Stroke
 from gaitlab.report.figures.svg import tidy
 from gaitlab.series import SensorSeries
@@ -128,12 +129,15 @@ class Sheet:
         self.text(x, y, word, size=SMALL_PT)
         return x + 0.57 * SMALL_PT * len(word) + 10
 
-    def to_svg(self, *, name: str, title: str, description: str) -> bytes:
-        """The same sheet always gives the same bytes."""
+    def to_figure(
+        self, scene: Scene, *, name: str, title: str, caption: str, alt: str, wide: bool = False
+    ) -> Figure:
+        """Write the SVG; the same sheet always gives the same bytes."""
         buffer = io.BytesIO()
         nothing = {"Date": None, "Creator": None, "Format": None, "Type": None}
         FigureCanvasSVG(self._figure).print_svg(buffer, metadata=nothing)  # type: ignore[no-untyped-call]
-        return tidy(buffer.getvalue(), name=name, title=title, description=description)
+        svg = tidy(buffer.getvalue(), name=scene.prefix + name, title=title, description=alt)
+        return Figure(name, title, caption, alt, svg, wide)
 
 
 class Panel:

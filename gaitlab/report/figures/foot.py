@@ -34,12 +34,12 @@ def acceleration(scene: Scene, placement: Placement) -> Figure | None:
     panel.scale_x("s")
     panel.bands(series)
     sheet.keys(154, _SOLID, band_keys(series))
-    return _figure(
-        sheet,
+    return sheet.to_figure(
+        scene,
         name=f"{placement}_acceleration",
         title=f"{placement.label.capitalize()}: free acceleration and rests",
-        caption="Acceleration without gravity and without the offset; the three components one below the other "
-        "on one scale. Bands: the foot rests, and its velocity is set to zero.",
+        caption="Acceleration without gravity and without the offset; the three components one below the "
+        "other, on one scale. Bands: the foot rests, and its velocity is set to zero.",
         alt=alt,
     )
 
@@ -125,8 +125,8 @@ def above_and_below(
         f"{quantity.capitalize()} of the {placement.label} along x, y and z. Uncorrected, it ends at "
         f"{_xyz(drift[-1], unit)}; corrected, at {_xyz(kept[-1], unit)}."
     )
-    return _figure(
-        sheet,
+    return sheet.to_figure(
+        scene,
         name=f"{placement}_{quantity}",
         title=f"{placement.label.capitalize()}: {quantity}",
         caption=f"Above: {quantity} integrated without any correction. {how}",
@@ -143,7 +143,3 @@ def _xyz(values: Floats, unit: str) -> str:
     return ", ".join(
         f"{axis} {v + 0.0:.2f} {unit}".replace("-", "−") for axis, v in zip("xyz", values, strict=True)
     )
-
-
-def _figure(sheet: Sheet, *, name: str, title: str, caption: str, alt: str) -> Figure:
-    return Figure(name, title, caption, alt, sheet.to_svg(name=name, title=title, description=alt))

@@ -42,6 +42,7 @@ class Scene:
 
     result: Result
     series: Series
+    prefix: str = ""
 
     def sensor(self, placement: Placement) -> SensorSeries | None:
         """The sensor's series, or None where it has no samples."""

@@ -13,7 +13,7 @@ from gaitlab.series import SensorSeries
 
 MOST_POINTS, MOST_MARKERS, MOST_LABELS = 3000, 150, 6
 _LEFT_PT, _RIGHT_PT, _BOTTOM_PT, _TOP_PT = 24.0, 12.0, 16.0, 20.0
-_LOWEST_PT, _HIGHEST_PT = 46.0, 300.0
+_LOWEST_PT, _HIGHEST_PT = 56.0, 300.0
 _AIR_M = 0.25
 _TURN = Stroke(*TURN_KEY, "-")
 _START = Stroke("start", INK, "none", "+")
@@ -37,14 +37,13 @@ def route(scene: Scene) -> Figure | None:
     _start_and_end(panel, feet)
     boxes = [TURN_KEY] if scene.result.walk.turns else []
     panel.sheet.keys(panel.sheet.height_pt - 9, [*(SIDES[side] for side in feet), _START, _END], boxes)
-    title, alt = "Route from above", _description(scene, feet)
-    return Figure(
+    return panel.sheet.to_figure(
+        scene,
         name="route",
-        title=title,
-        caption="The way of each foot on the floor, both axes on one scale: x along the first straight part, y to "
-        "its left. Marks: where each stride ended, hollow where it belongs to a turn.",
-        alt=alt,
-        svg=panel.sheet.to_svg(name="route", title=title, description=alt),
+        title="Route from above",
+        caption="The way of each foot on the floor, both axes on one scale: x along the first straight part, "
+        "y to its left. Marks: where each stride ended, hollow where it belongs to a turn.",
+        alt=_description(scene, feet),
         wide=True,
     )
 
@@ -94,24 +93,18 @@ def _stride_ends(panel: Panel, scene: Scene, one: SensorSeries, side: Side) -> N
 def _turns(panel: Panel, scene: Scene, feet: Feet) -> None:
     turns = scene.result.walk.turns
     for turn in turns:
+        lines = []
         for one in feet.values():
             inside = np.flatnonzero((one.t_s >= turn.start_s) & (one.t_s < turn.end_s))
             if len(inside):
-                keep = inside[thin(len(inside), 200)]
-                panel.sheet.line(*_on(panel, one.position_m[keep]), _TURN, 9, 1)
-        if len(turns) <= MOST_LABELS:
-            middle = np.mean(
-                [_at(one, np.array([(turn.start_s + turn.end_s) / 2])) for one in feet.values()], axis=0
-            )
-            (x,), (y,) = _on(panel, middle)
-            side = "left" if turn.angle_deg > 0 else "right"
-            inward = -1 if x > panel.left + panel.wide / 2 else 1
+                lines.append(_on(panel, one.position_m[inside[thin(len(inside), 200)]]))
+                panel.sheet.line(*lines[-1], _TURN, 9, 1)
+        if lines and len(turns) <= MOST_LABELS:
+            x, y = np.concatenate([line[0] for line in lines]), np.concatenate([line[1] for line in lines])
+            text = f"{abs(turn.angle_deg):.0f}° {'left' if turn.angle_deg > 0 else 'right'}"
+            middle = float(np.clip(x.mean(), panel.left + 22, panel.right - 18))
             panel.sheet.text(
-                x + 8 * inward,
-                y - 2.5,
-                f"{abs(turn.angle_deg):.0f}° {side}",
-                across="right" if inward < 0 else "left",
-                size=SMALL_PT,
+                middle, min(float(y.max()) + 7, panel.top - 7), text, across="center", size=SMALL_PT
             )
 
 

@@ -14,7 +14,7 @@ from gaitlab.report.figures.style import FULL_WIDTH_PT, SIDES, Stroke
 from gaitlab.result import Stride
 
 MOST_STRIDES = 120
-_LEFT_PT, _BOTTOM_PT, _HIGH_PT = 30.0, 16.0, 112.0
+_LEFT_PT, _BOTTOM_PT, _HIGH_PT = 30.0, 16.0, 76.0
 
 
 def strides(scene: Scene) -> Figure | None:
@@ -25,38 +25,41 @@ def strides(scene: Scene) -> Figure | None:
         return None
     together = max(1, -(-max(len(found) for found in feet.values()) // MOST_STRIDES))
     points = {side: _points(found, together) for side, found in feet.items()}
-    start, end = (
-        f([edge(rows[:, 0]) for rows in points.values()]) for f, edge in ((min, np.min), (max, np.max))
-    )
-    bottom = min(float((p[:, 1] - p[:, 2]).min()) for p in points.values())
-    top = max(float((p[:, 1] + p[:, 2]).max()) for p in points.values())
-    sheet = Sheet(FULL_WIDTH_PT, _BOTTOM_PT + _HIGH_PT + 30)
+    time, length, half, _ = np.vstack(list(points.values())).T
+    sheet = Sheet(FULL_WIDTH_PT, _BOTTOM_PT + _HIGH_PT + 28)
     box = (_LEFT_PT, _BOTTOM_PT, FULL_WIDTH_PT - _LEFT_PT - 12, _HIGH_PT)
-    panel = Panel(sheet, box, padded(float(start), float(end), 0.02), padded(max(0.0, bottom), top))
+    panel = Panel(
+        sheet, box, padded(*_range(time), 0.02), padded(*_range(np.append(length - half, length + half)))
+    )
     panel.scale_y("m")
     panel.scale_x("s")
     for side, rows in points.items():
         _draw(panel, rows, SIDES[side])
     sheet.keys(sheet.height_pt - 9, [SIDES[side] for side in points])
-    title = "Stride lengths"
-    alt = " ".join(_sentence(side, found) for side, found in feet.items())
     each = (
         "Each mark is one stride, at the middle of its time"
         if together == 1
         else f"Each mark is the mean of {together} neighbouring strides"
     )
-    return Figure(
+    return sheet.to_figure(
+        scene,
         name="strides",
-        title=title,
+        title="Stride lengths",
         caption=f"{each}; the bar is its 95 % interval. Hollow: strides that belong to a turn.",
-        alt=alt,
-        svg=sheet.to_svg(name="strides", title=title, description=alt),
+        alt=" ".join(_sentence(side, found) for side, found in feet.items()),
         wide=True,
     )
 
 
+def _range(values: Floats) -> tuple[float, float]:
+    return float(values.min()), float(values.max())
+
+
 def _points(found: Sequence[Stride], together: int) -> Floats:
-    """Rows of (time, length, half interval, turning), ``together`` strides in a row."""
+    """Rows of (time, length, half interval, turning), the means of ``together`` strides a row.
+
+    The intervals are averaged, not shrunk: strides share a part of their error.
+    """
     rows = np.array(
         [
             ((s.start_s + s.end_s) / 2, s.length_m, TWO_SIDED_95 * s.length_sd_m, float(s.turning))
@@ -65,8 +68,7 @@ def _points(found: Sequence[Stride], together: int) -> Floats:
     )
     groups = np.arange(0, len(rows), together)
     count = np.diff(np.append(groups, len(rows)))[:, None]
-    means = np.add.reduceat(rows, groups, axis=0) / count
-    means[:, 2] = np.sqrt(np.add.reduceat(rows[:, 2] ** 2, groups)) / count[:, 0]
+    means: Floats = np.add.reduceat(rows, groups, axis=0) / count
     return means
 
 

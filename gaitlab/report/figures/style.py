@@ -1,4 +1,4 @@
-"""The common look: Okabe and Ito's colours, which colour-blind readers tell apart; lines and marks differ too."""
+"""The common look: Okabe and Ito's colours, which colour-blind readers tell apart; lines and marks differ."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from typing import Any
 from gaitlab.recording.model import Side
 
 HALF_WIDTH_PT = 300.0
-FULL_WIDTH_PT = 350.0
-TEXT_PT = 8.5
-SMALL_PT = 7.5
+FULL_WIDTH_PT = 330.0
+TEXT_PT = 9.0
+SMALL_PT = 8.2
 INK = "#1d2733"
 MUTED = "#566270"
 RULE = "#dfe4ea"
