@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from dataclasses import dataclass
 
 from gaitlab.clinic.access import Permission
@@ -64,7 +64,9 @@ def inspect_upload(desk: Desk, files: Sequence[InputFile]) -> list[InspectedFile
     desk.pause()
     known = {device: Placement(placement) for device, placement in chosen.items()}
     stated = _stated(unpacked)
-    inspected = [_inspect(file, guess_one(file, known), stated) for file in unpacked]
+    guesses = [guess_one(file, known) for file in unpacked]
+    claimed = {guess.placement for guess in guesses if is_sensor_text(guess.file)}
+    inspected = [_inspect(guess.file, guess, stated, claimed) for guess in guesses]
     if all(one.left_out for one in inspected):
         _refuse_all(unpacked)
     return inspected
@@ -74,10 +76,12 @@ def _stated(files: Sequence[InputFile]) -> dict[str, Placement] | None:
     """Placements by file name from a ``placement.json`` among the files; None where there is none."""
     if not any(file.basename.lower() == PLACEMENT_FILE for file in files):
         return None
-    return {file.name: placement for placement, file in place_files(files).items()}
+    return {file.name: placement for placement, file in place_files(files).files.items()}
 
 
-def _inspect(file: InputFile, guess: Guess, stated: dict[str, Placement] | None) -> InspectedFile:
+def _inspect(
+    file: InputFile, guess: Guess, stated: dict[str, Placement] | None, claimed: Set[Placement | None]
+) -> InspectedFile:
     placement, why = guess.placement, guess.why
     if stated is not None:
         placement = stated.get(file.name)
@@ -86,7 +90,8 @@ def _inspect(file: InputFile, guess: Guess, stated: dict[str, Placement] | None)
             if placement
             else f"{PLACEMENT_FILE} does not name it."
         )
-    if not is_sensor_text(file) and placement is None:
+    # A damaged recording is refused by its reader; anything else beside the recordings is left aside.
+    if not is_sensor_text(file) and (placement is None or (stated is None and placement in claimed)):
         return InspectedFile(file.name, None, None, "This is no sensor file.", True, 0, None, 0.0)
     left_out = placement is None and (stated is not None or guess.elsewhere is not None)
     samples = read_samples(file)

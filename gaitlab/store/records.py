@@ -15,7 +15,7 @@ from sqlalchemy.orm import Session as Database
 from sqlalchemy.orm import contains_eager, selectinload
 
 from gaitlab.store.base import Base
-from gaitlab.store.people import Account
+from gaitlab.store.people import Account, Site
 from gaitlab.store.tables import (
     Analysis,
     AuditEvent,
@@ -99,7 +99,7 @@ def session_counts(scope: Scope, patient_ids: Sequence[str]) -> dict[str, int]:
         .where(Session.site_id == scope.site_id, Session.patient_id.in_(patient_ids))
         .group_by(Session.patient_id)
     )
-    return dict(rows.tuples())
+    return dict(rows.tuples().all())
 
 
 def session(scope: Scope, session_id: str, *, lock: bool = False) -> Session | None:
@@ -123,7 +123,7 @@ def trial_counts(scope: Scope, session_ids: Sequence[str]) -> dict[str, int]:
         .where(Trial.site_id == scope.site_id, Trial.session_id.in_(session_ids))
         .group_by(Trial.session_id)
     )
-    return dict(rows.tuples())
+    return dict(rows.tuples().all())
 
 
 def _whole(query: Select[Trial]) -> Select[Trial]:
@@ -176,6 +176,11 @@ def events(scope: Scope, *, patient_id: str | None, limit: int, offset: int) -> 
     return list(scope.db.scalars(found.order_by(AuditEvent.seq.desc()).limit(limit).offset(offset))), total
 
 
+def site_name(scope: Scope) -> str:
+    """What the site is called."""
+    return scope.db.scalars(select(Site.name).where(Site.id == scope.site_id)).one()
+
+
 def account_names(scope: Scope, account_ids: Sequence[str]) -> dict[str, str]:
     """Names of these accounts of the site."""
     rows = scope.db.execute(
@@ -183,7 +188,7 @@ def account_names(scope: Scope, account_ids: Sequence[str]) -> dict[str, str]:
             Account.site_id == scope.site_id, Account.id.in_(set(account_ids))
         )
     )
-    return dict(rows.tuples())
+    return dict(rows.tuples().all())
 
 
 def current(trial: Trial) -> Analysis:
