@@ -7,8 +7,8 @@ z(t), each a quintic track, the point of the sole under the ankle is at
 
     footfall + s·(next footfall − footfall) + X(θ)·heading + (H(θ) + z)·up,
 
-where X and H say how a sole that ends at heel and forefoot rolls on the floor without slipping. So in contact
-the foot never slips, and it is never below the floor.
+where X and H say how a sole that ends at heel and forefoot rolls on the floor without slipping; it is never
+below the floor. The heel lands on a cushion a few millimetres thick, which is pressed flat after contact.
 """
 
 from __future__ import annotations
@@ -31,16 +31,18 @@ from gaitlab.simulation.walk import Person, leftward
 _SPEED_UP, _SLOW_DOWN = 0.28, 0.45
 #: The tip of the shoe starts forward before it leaves the floor, the heel comes to rest after it has reached
 #: it (shares of the swing).
-_DRAG, _SLIP = 0.10, 0.07
+_DRAG, _SLIP = 0.07, 0.07
 #: The heel rises fastest at this share of its rise before foot off.
 _FASTEST_RISE = 0.11
 #: The sole is tipped most soon after foot off, and the toes are highest shortly before contact (shares of
 #: swing).
 _AFTER_OFF, _BEFORE_CONTACT = 0.085, 0.085
-#: Rate at which the toes come down at initial contact, over the mean rate of the landing.
-_LANDING_RATE = 0.85
-#: Waves of the shock between initial contact and flat foot.
-_SHOCK_WAVES = 2.5
+#: Rate at which the toes come down at initial contact, over the mean rate of the landing; its change.
+_LANDING_RATE, _LANDING_BEND = 1.05, 4.5
+#: Share of the landing in which the heel's cushion is pressed flat.
+_CUSHION = 0.23
+#: Waves of the shock between initial contact and flat foot; how fast it decays (strongest at 1/6 of the landing).
+_SHOCK_WAVES, _SHOCK_DECAY = 2.5, 5
 #: Roll of the foot in swing, and rocking of the sensor by the shock (rad).
 _SWING_ROLL_RAD, _SHOCK_ROLL_RAD = 0.12, 0.012
 #: Direction of the shock in foot coordinates: backwards, outwards, up.
@@ -63,6 +65,7 @@ class FootMotion:
             "yaw": _between(falls, falls.heading_rad),
             "tip": _tip(falls),
             "swing": _swing_bump(falls),
+            "lift": _lift(falls),
         }
         object.__setattr__(self, "_tracks", tracks)
 
@@ -72,7 +75,6 @@ class FootMotion:
         outwards = leftward(self.side)
         swing_no, swinging = _swing_at(self.footfalls, t_s)
         yaw, tip, bump = tracks["yaw"](t_s), tracks["tip"](t_s), tracks["swing"](t_s)
-        lift = np.array([gait.lift_m for gait in self.footfalls.gaits[1:]] or [0.0])[swing_no]
         aside = np.array([gait.circumduction_m for gait in self.footfalls.gaits[1:]] or [0.0])[swing_no]
         forward, up = _rolling(tip, self._softening(swing_no, swinging), self.person)
         sine, cosine = sin_cos(yaw)
@@ -80,7 +82,7 @@ class FootMotion:
         return Pose(
             x=tracks["x"](t_s) + cosine * forward - sine * left,
             y=tracks["y"](t_s) + sine * forward + cosine * left,
-            z=up + bump * lift,
+            z=up + tracks["lift"](t_s),
             yaw=yaw,
             pitch=-tip,
             roll=bump * (outwards * _SWING_ROLL_RAD),
@@ -104,8 +106,10 @@ class FootMotion:
         u = np.clip((t_s - falls.initial_contact_s[fall]) / length, 0.0, 1.0)
         zero = np.zeros_like(u)
         inner = Jet(u, np.where((u > 0.0) & (u < 1.0), 1.0 / length, 0.0), zero)
-        g, slope, bend = u * (1.0 - u) ** 2, (1.0 - u) * (1.0 - 3.0 * u), 6.0 * u - 4.0
-        peak = (4.0 / 27.0) ** 3
+        k, rest = _SHOCK_DECAY, 1.0 - u
+        g, slope = u * rest**k, rest ** (k - 1) * (1.0 - (k + 1) * u)
+        bend = k * rest ** (k - 2) * ((k + 1) * u - 2.0)
+        peak = (k**k / (k + 1) ** (k + 1)) ** 3
         envelope = inner.through(
             g**3 / peak, 3.0 * g**2 * slope / peak, (6.0 * g * slope**2 + 3.0 * g**2 * bend) / peak
         )
@@ -167,13 +171,33 @@ def _tip(falls: Footfalls) -> Track:
     rising, slowing = (1.0 - _FASTEST_RISE) * rise, _FASTEST_RISE * rise + _AFTER_OFF * swing
     speed = tip / (0.4 * rising + 0.6 * slowing)
     before, dropping = _BEFORE_CONTACT * swing, _LANDING_RATE * toe_up / landing
+    first_bend, bend = 0.6 * dropping / before, _LANDING_BEND * toe_up / landing**2
+    highest = toe_up + 0.5 * dropping * before - (bend - first_bend) * before**2 / 12.0
     columns = [
         (heel_off, zero, zero, zero),
         (heel_off + rising, -0.4 * speed * rising, -speed, zero),
         (foot_off + _AFTER_OFF * swing, -tip, zero, 1.1 * speed / slowing),
-        (contact - before, toe_up + 0.5 * dropping * before, zero, -dropping / before),
-        (contact, toe_up, -dropping, -dropping / before),
+        (contact - before, highest, zero, -first_bend),
+        (contact, toe_up, -dropping, -bend),
         (contact + landing, zero, zero, zero),
+    ]
+    knots, values, rates, bends = (np.column_stack(column).ravel() for column in zip(*columns, strict=True))
+    return _track(knots, values, rates, bends, 0.0)
+
+
+def _lift(falls: Footfalls) -> Track:
+    """Height of the whole sole over the floor: greatest in mid-swing, until the heel's cushion is pressed
+    flat."""
+    start, end = falls.foot_off_s[:-1], falls.initial_contact_s[1:]
+    gaits, zero = falls.gaits[1:], np.zeros(len(start))
+    height = np.array([gait.lift_m for gait in gaits])
+    pressing = _CUSHION * np.array([gait.landing_s for gait in gaits])
+    speed = falls.effort[1:] * np.array([gait.heel_strike_mps2 for gait in gaits]) * pressing / 1.5
+    columns = [
+        (start, zero, zero, zero),
+        (0.5 * (start + end), height, zero, -8.0 * height / (end - start) ** 2),
+        (end, 0.5 * speed * pressing, -speed, zero),
+        (end + pressing, zero, zero, zero),
     ]
     knots, values, rates, bends = (np.column_stack(column).ravel() for column in zip(*columns, strict=True))
     return _track(knots, values, rates, bends, 0.0)

@@ -15,7 +15,14 @@ COMFORTABLE = Gait()
 FAST = Gait(
     stride_length_m=1.60, stride_time_s=0.92, stance_share=0.59, heel_strike_mps2=60.0, toe_up_rad=0.42
 )
-SLOW = Gait(stride_length_m=0.80, stride_time_s=1.60, stance_share=0.68, heel_rise_rad=0.8, toe_up_rad=0.18)
+SLOW = Gait(
+    stride_length_m=0.80,
+    landing_share=0.07,
+    stride_time_s=1.60,
+    stance_share=0.68,
+    heel_rise_rad=0.8,
+    toe_up_rad=0.18,
+)
 #: Short steps, hardly any roll of the foot: what Parkinson's disease or deep cerebral changes look like.
 SHUFFLING = Gait(
     stride_length_m=0.45,
@@ -39,7 +46,15 @@ LIMPING = Gait(
     circumduction_m=0.05,
     variability=0.02,
 )
-ATAXIC = Gait(stride_length_m=1.0, stride_time_s=1.25, step_width_m=0.22, stance_share=0.66, variability=0.06)
+ATAXIC = Gait(
+    stride_length_m=1.0,
+    stride_time_s=1.25,
+    heel_rise_rad=0.8,
+    toe_up_rad=0.2,
+    step_width_m=0.22,
+    stance_share=0.66,
+    variability=0.06,
+)
 
 
 def timed_25_foot_walk(gait: Gait = COMFORTABLE) -> Plan:

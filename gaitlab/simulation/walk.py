@@ -78,7 +78,7 @@ class Gait:
     circumduction_m : float
         How far the swinging foot passes outwards.
     heel_strike_mps2 : float
-        Size of the shock at initial contact, as the foot's sensor feels it.
+        Greatest deceleration of the heel when it lands, and size of the vibration that follows.
     length_asymmetry, time_asymmetry : float
         Left steps are longer, and take longer, by this share, right ones shorter.
     variability : float
@@ -90,7 +90,7 @@ class Gait:
     step_width_m: float = 0.10
     toe_out_rad: float = 0.10
     stance_share: float = 0.62
-    landing_share: float = 0.10
+    landing_share: float = 0.09
     heel_off_share: float = 0.25
     toe_up_rad: float = 0.30
     heel_rise_rad: float = 1.1
