@@ -21,7 +21,8 @@ from gaitlab.errors import InputError, TooLarge
 from gaitlab.recording.intake import MIB, InputFile, Limits, check_size, clean_name
 
 _END = struct.Struct("<4s4H2LH")
-_END_MARK, _END64_MARK = b"PK\x05\x06", b"PK\x06\x06"
+_END_MARK, _LOCATOR_MARK = b"PK\x05\x06", b"PK\x06\x07"
+_LOCATOR_BYTES = 20
 _LOCAL_HEADER_BYTES = 30
 _DIRECTORY_ENTRY_BYTES = 2048
 _ENCRYPTED_FLAGS = 0x1 | 0x40 | 0x2000
@@ -79,7 +80,9 @@ def _check_directory_size(archive: InputFile, limits: Limits) -> None:
         )
     _, _, _, _, count, directory_bytes, _, _ = _END.unpack_from(content, at)
     too_many = count > limits.zip_entries or directory_bytes > limits.zip_entries * _DIRECTORY_ENTRY_BYTES
-    if too_many or _END64_MARK in content[max(0, at - 4096) : at]:
+    if too_many or content[max(0, at - _LOCATOR_BYTES) :].startswith(
+        _LOCATOR_MARK
+    ):  # ZIP64: for more than we read
         raise TooLarge(
             "zip_entries",
             f"The zip holds too many files; at most {limits.zip_entries} are read.",

@@ -32,6 +32,9 @@ def plain_text(file: InputFile) -> bytes:
     InputError
         ``empty_file``, ``binary_file``.
     """
+    for mark, kind in _BINARY:
+        if file.content.startswith(mark):
+            raise _binary(file, kind)
     content = _undo_utf16(file)
     if content.startswith(codecs.BOM_UTF8):
         content = content[3:]
@@ -86,9 +89,6 @@ def _undo_utf16(file: InputFile) -> bytes:
 
 
 def _refuse_binary(file: InputFile, content: bytes) -> None:
-    for mark, kind in _BINARY:
-        if content.startswith(mark):
-            raise _binary(file, kind)
     head = content[:_HEAD]
     n_control = len(head) - len(head.translate(None, _CONTROL))
     if b"\x00" in content or n_control > 0.05 * len(head):

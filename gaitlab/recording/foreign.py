@@ -13,7 +13,7 @@ _HINT = (
     "Export the recording from MT Manager as text (ASCII), with packet counter, accelerometer and gyroscope."
 )
 _DOT = re.compile(
-    r"^\s*(?:sep=|DeviceTag:|SyncStatus:|Measurement Mode:|OutputRate:)", re.IGNORECASE | re.MULTILINE
+    r"^\s*(?:DeviceTag:|SyncStatus:|Measurement Mode:|OutputRate:)", re.IGNORECASE | re.MULTILINE
 )
 _SENSOR_HEADINGS = re.compile(r"\b(?:Acc|Gyr|FreeAcc)_X\b")
 _KNOWN = (

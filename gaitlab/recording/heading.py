@@ -12,10 +12,10 @@ from gaitlab.recording.intake import LIMITS, Limits
 
 _COUNTER = re.compile(rb"packet[ _]?counter", re.IGNORECASE)
 _DELIMITERS = (";", "\t", "|", ",", " ", ":")
-_RATE = re.compile(r"\b(?:rate|frequency)\s*:\s*([0-9]+(?:[.,][0-9]+)?)\s*Hz", re.IGNORECASE)
+_RATE = re.compile(r"(?:rate|frequency)\s*:\s*([0-9]+(?:[.,][0-9]+)?)\s*(?:Hz|$)", re.IGNORECASE)
 _DEVICE = re.compile(r"\bDevice\s?Id\s*:\s*([0-9A-F]{6,16})\b", re.IGNORECASE)
 _FRAME = re.compile(r"\bCoordinate system\s*:\s*([A-Z]{3})\b", re.IGNORECASE)
-_UNIT = re.compile(r"\s*(?:\((?P<round>[^()]*)\)|\[(?P<square>[^\[\]]*[^\[\]0-9][^\[\]]*)\])\s*$")
+_UNIT = re.compile(r"\(([^()]*)\)$|\[([^\[\]]*)\]$")
 
 COUNTER = "packetcounter"
 STAMP = "sampletimefine"
@@ -177,8 +177,9 @@ def _column(heading: str) -> Column:
     heading = heading.strip()
     unit = ""
     bare = heading
-    if match := _UNIT.search(heading):
+    match = _UNIT.search(heading)
+    if match is not None and not (match[2] or "").isdigit():  # Mat[1][1] ends in an index, not in a unit
         bare = heading[: match.start()]
-        unit = (match["round"] or match["square"] or "").strip().removeprefix("in ").strip()
+        unit = (match[1] or match[2] or "").strip().removeprefix("in ").strip()
     name = bare.strip().lower()
     return Column(heading, _ALIASES.get(name, name), unit)

@@ -97,6 +97,20 @@ def _groups(header: Header) -> list[tuple[str, ...]]:
     return [group for group in present if group not in _ORIENTATIONS or group == orientation]
 
 
+def _incomplete(header: Header) -> list[Finding]:
+    """Say which optional quantities cannot be used since a column of theirs is missing."""
+    found = []
+    for group in (h.MAG, h.FREE_ACC, *_ORIENTATIONS):
+        there = [name for name in group if name in header.index]
+        if there and len(there) < len(group):
+            missing = ", ".join(h.SPELLING[name] for name in group if name not in header.index)
+            message = (
+                f"{header.heading(there[0])} and its companions are not used, since {missing} is missing."
+            )
+            found.append(Finding("incomplete_columns", message))
+    return found
+
+
 def _stamp(header: Header, content: bytes) -> list[str]:
     """The time stamps' column, unless it is empty from the start, as it often is."""
     if h.STAMP not in header.index:
@@ -114,13 +128,12 @@ def _samples(file: InputFile, columns: Columns) -> Samples:
         columns[h.COUNTER], file.name, header.heading(h.COUNTER), columns.line_of
     )
     stamps_hz = rate_from_stamps(packet, columns[h.STAMP]) if h.STAMP in columns else None
-    n_rows = len(columns)
-    columns, packet, findings = _usable(columns, packet)
-    attitude, attitude_findings = _attitude(columns, packet)
-    mag, mag_findings = _optional(columns.group(h.MAG), packet, "magnetometer")
-    free_acc, free_findings = _optional(columns.group(h.FREE_ACC), packet, "device's free acceleration")
-    pressure, unit_findings = units.checked_pressure(columns.group(h.PRESSURE))
-    pressure, pressure_findings = _optional(pressure, packet, "pressure")
+    said: list[Finding] = _incomplete(header)
+    columns, packet = _usable(columns, packet, said)
+    attitude = _attitude(columns, packet, said)
+    mag = _optional(columns.group(h.MAG), packet, "magnetometer", said)
+    free_acc = _optional(columns.group(h.FREE_ACC), packet, "device's free acceleration", said)
+    pressure = _optional(columns.group(h.PRESSURE), packet, "pressure", said)
     samples = Samples(
         file=file,
         family=FAMILY,
@@ -135,14 +148,8 @@ def _samples(file: InputFile, columns: Columns) -> Samples:
         attitude=attitude,
         pressure_pa=None if pressure is None else pressure[:, 0],
         orientation_from=next((_ORIENTATIONS[group] for group in _ORIENTATIONS if group[0] in columns), None),
-        n_dropped=n_rows - len(packet),
         n_wraps=n_wraps,
-        findings=findings
-        + attitude_findings
-        + mag_findings
-        + free_findings
-        + unit_findings
-        + pressure_findings,
+        findings=tuple(said),
     )
     return units.check(samples, header, columns.line_of)
 
@@ -163,14 +170,14 @@ def _refuse_infinite(columns: Columns) -> None:
     )
 
 
-def _usable(columns: Columns, packet: Packets) -> tuple[Columns, Packets, tuple[Finding, ...]]:
+def _usable(columns: Columns, packet: Packets, said: list[Finding]) -> tuple[Columns, Packets]:
     """Treat rows without accelerometer or gyroscope as lost; refuse where they are many."""
     needed = [*h.ACC, *h.GYR] if h.ACC[0] in columns else [*h.FREE_ACC, *h.GYR]
     missing = {name: np.isnan(columns[name]) for name in needed if name in columns}
     unusable = np.logical_or.reduce(list(missing.values()))
     n_unusable = int(np.count_nonzero(unusable))
     if not n_unusable:
-        return columns, packet, ()
+        return columns, packet
     header = columns.header
     first = int(np.argmax(unusable))
     for name, nan in missing.items():
@@ -197,17 +204,18 @@ def _usable(columns: Columns, packet: Packets) -> tuple[Columns, Packets, tuple[
         f"{n_unusable} of {len(packet)} rows hold no number (first in line {columns.line_of(first)}, column "
         f"{header.heading(worst)}); they are treated as lost samples, and strides there are less certain."
     )
-    return columns.keep(~unusable), packet[~unusable], (Finding("nan_rows", message),)
+    said.append(Finding("nan_rows", message))
+    return columns.keep(~unusable), packet[~unusable]
 
 
-def _attitude(columns: Columns, packet: Packets) -> tuple[Floats | None, tuple[Finding, ...]]:
+def _attitude(columns: Columns, packet: Packets, said: list[Finding]) -> Floats | None:
     """The device's orientation as continuous unit quaternions (n, 4), in a world whose z axis points up."""
     names = next((group for group in _ORIENTATIONS if group[0] in columns), None)
     if names is None:
-        return None, ()
-    values, findings = _optional(columns.group(names), packet, "device's orientation", interpolate=False)
+        return None
+    values = _optional(columns.group(names), packet, "device's orientation", said, interpolate=False)
     if values is None:
-        return None, findings
+        return None
     known = np.isfinite(values).all(axis=1)
     given = values if known.all() else values[known]
     _refuse_no_rotation(columns, names, given, np.flatnonzero(known))
@@ -220,7 +228,7 @@ def _attitude(columns: Columns, packet: Packets) -> tuple[Floats | None, tuple[F
     quaternion = rotation.continuous(quaternion)
     if not known.all():
         quaternion = rotation.unit(_interpolate(packet, packet[known], quaternion))
-    return (rotation.ned_to_enu(quaternion) if columns.header.frame == "NED" else quaternion), findings
+    return rotation.ned_to_enu(quaternion) if columns.header.frame == "NED" else quaternion
 
 
 def _refuse_no_rotation(columns: Columns, names: tuple[str, ...], values: Floats, rows: Packets) -> None:
@@ -249,19 +257,20 @@ def _refuse_no_rotation(columns: Columns, names: tuple[str, ...], values: Floats
 
 
 def _optional(
-    values: Floats | None, packet: Packets, what: str, *, interpolate: bool = True
-) -> tuple[Floats | None, tuple[Finding, ...]]:
+    values: Floats | None, packet: Packets, what: str, said: list[Finding], *, interpolate: bool = True
+) -> Floats | None:
     """Values with their few missing rows interpolated; None, and said, where too many are missing."""
     if values is None:
-        return None, ()
+        return None
     known: Bools = np.asarray(np.isfinite(values).all(axis=1))
     if known.all():
-        return values, ()
+        return values
     n_missing = len(known) - int(np.count_nonzero(known))
     if n_missing > PARAMS.most_nan_share * len(known):
         message = f"The {what} is missing in {n_missing} of {len(known)} rows and is not used."
-        return None, (Finding("column_not_used", message),)
-    return (_interpolate(packet, packet[known], values[known]) if interpolate else values), ()
+        said.append(Finding("column_not_used", message))
+        return None
+    return _interpolate(packet, packet[known], values[known]) if interpolate else values
 
 
 def _interpolate(packet: Packets, known: Packets, values: Floats) -> Floats:

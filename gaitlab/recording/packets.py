@@ -21,6 +21,8 @@ from gaitlab.recording.samples import Packets
 
 MODULUS = 65_536
 _LARGEST = 2.0**53
+_SMALL_GRID, _MOST_PER_SAMPLE = 300_000, 20
+"""A few rows must not claim a large grid: beyond the first size at most so many packets a received sample."""
 
 
 @dataclass(frozen=True)
@@ -139,6 +141,13 @@ def regular_grid(packet: Packets, file: str, limits: Limits = LIMITS) -> Grid:
             "too_many_rows",
             f"The packet counter spans {n} packets; at most {limits.rows} are read.",
             "Export a shorter part of the recording.",
+            file=file,
+        )
+    if n > _SMALL_GRID and n > _MOST_PER_SAMPLE * len(packet):
+        raise InputError(
+            "too_lossy",
+            f"Of {n} packets only {len(packet)} were received.",
+            "Check the radio link and record again; so few samples hold no walk.",
             file=file,
         )
     row = packet - first

@@ -43,8 +43,8 @@ class Samples:
         Where the device's counter wraps; None if it does not.
     orientation_from : str or None
         How the file writes the device's orientation, for people.
-    n_dropped : int
-        Rows of the file that carried no usable numbers; they count as lost.
+    n_wraps : int
+        How often the counter wrapped.
     """
 
     file: InputFile
@@ -60,7 +60,6 @@ class Samples:
     attitude: Floats | None = None
     pressure_pa: Floats | None = None
     orientation_from: str | None = None
-    n_dropped: int = 0
     n_wraps: int = 0
     findings: tuple[Finding, ...] = field(default=())
 

@@ -101,14 +101,12 @@ def _candidates(guesses: Sequence[Guess], taken: Mapping[Placement, object]) -> 
 
 
 def _named_file(path: Path | str, files: Sequence[InputFile]) -> InputFile:
-    """The file of that name among those given (a zip's, say), else the one on disk."""
+    """The file on disk, else the one of that name among those given (in a zip, say)."""
     wanted = str(path).replace("\\", "/")
-    for file in files:
-        if file.name == wanted:
-            return file
-    same = [file for file in files if file.basename == wanted]
-    if len(same) == 1 and not Path(path).exists():
-        return same[0]
+    if not Path(path).exists():
+        match = next((file for file in files if file.name == wanted), None) or _by_basename(files, wanted)
+        if match is not None:
+            return match
     loaded = expand(load([path]))
     if len(loaded) != 1:
         raise InputError(

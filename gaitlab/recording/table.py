@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -164,9 +164,10 @@ def _line_too_long(header: Header, line: int) -> TooLarge:
 def _without_blank_lines(content: bytes, header: Header) -> tuple[bytes, NDArray[np.int64]]:
     """Leave out lines of blanks; refuse the first line with a wrong number of fields."""
     delimiter = header.delimiter.encode()
-    kept, numbers = [], []
+    kept = bytearray()
+    numbers: list[int] = []
     n_fields = 0
-    for number, line in enumerate(content[header.body :].split(b"\n"), start=header.line + 1):
+    for number, line in enumerate(_lines(content, header.body), start=header.line + 1):
         if not line.strip():
             continue
         found = line.count(delimiter) + 1
@@ -180,9 +181,9 @@ def _without_blank_lines(content: bytes, header: Header) -> tuple[bytes, NDArray
                 file=header.file,
                 line=number,
             )
-        kept.append(line)
+        kept += line
         numbers.append(number)
-    if not kept:
+    if not numbers:
         raise InputError(
             "no_rows",
             "The table has headings but no rows.",
@@ -190,7 +191,14 @@ def _without_blank_lines(content: bytes, header: Header) -> tuple[bytes, NDArray
             file=header.file,
             line=header.line,
         )
-    return b"\n".join(kept) + b"\n", np.array(numbers, dtype=np.int64)
+    return bytes(kept), np.array(numbers, dtype=np.int64)
+
+
+def _lines(content: bytes, start: int) -> Iterator[bytes]:
+    """The lines from an offset on, one at a time, so that an error in a large file does not double it."""
+    stream = io.BytesIO(content)
+    stream.seek(start)
+    return iter(stream)
 
 
 def _decimal_mark(content: bytes, header: Header, layout: _Layout, wanted: Sequence[int]) -> str:
@@ -246,10 +254,10 @@ def _bad_number(
 ) -> InputError:  # fmt: skip
     """Search line by line for the field that the fast parser stumbled over."""
     delimiter = header.delimiter.encode()
-    for row, line in enumerate(content[layout.start : layout.end].split(b"\n")):
+    for row, line in enumerate(_lines(content, layout.start)):
         fields = line.split(delimiter)
         if len(fields) < layout.n_fields:
-            continue
+            break  # the lines of line feeds at the end
         for position in wanted:
             token = line_text(fields[position]).strip()
             number = token.replace(",", ".") if decimal == "," and "." not in token else token

@@ -71,7 +71,7 @@ def check_headings(header: Header) -> None:
 
 
 def check(samples: Samples, header: Header, line_of: LineOf) -> Samples:
-    """Refuse impossible units and values; set aside an orientation that contradicts gravity.
+    """Refuse impossible units and values; set aside orientation or pressure that cannot be right.
 
     Raises
     ------
@@ -82,7 +82,7 @@ def check(samples: Samples, header: Header, line_of: LineOf) -> Samples:
         _check_acc(samples.acc_mps2, header, line_of)
     if samples.gyr_radps is not None:
         _check_gyr(samples, header, line_of)
-    return _check_attitude(samples)
+    return _check_pressure(_check_attitude(samples))
 
 
 def _check_acc(acc_mps2: Floats, header: Header, line_of: LineOf, params: UnitParams = PARAMS) -> None:
@@ -179,20 +179,18 @@ def _check_attitude(samples: Samples, params: UnitParams = PARAMS) -> Samples:
     return replace(samples, attitude=None).with_findings(Finding("attitude_contradicts_gravity", message))
 
 
-def checked_pressure(
-    pressure: Floats | None, params: UnitParams = PARAMS
-) -> tuple[Floats | None, tuple[Finding, ...]]:
-    """Pressure in pascal (n,), or None with the reason where it cannot be pascal."""
-    if pressure is None or not np.isfinite(pressure).any():
-        return pressure, ()
-    median = float(np.nanmedian(pressure))
+def _check_pressure(samples: Samples, params: UnitParams = PARAMS) -> Samples:
+    """Set aside a pressure that cannot be in pascal."""
+    if samples.pressure_pa is None:
+        return samples
+    median = float(np.median(samples.pressure_pa))
     if params.pressure_pa[0] <= median <= params.pressure_pa[1]:
-        return pressure, ()
+        return samples
     message = (
         f"The pressure column is not in pascal (median {median:.4g}) and is not used; heights come from the "
         "motion alone."
     )
-    return None, (Finding("unit_pressure", message),)
+    return replace(samples, pressure_pa=None).with_findings(Finding("unit_pressure", message))
 
 
 def unit_evidence(samples: Samples) -> tuple[str, ...]:
