@@ -1,5 +1,4 @@
-"""A walk of which the truth is known exactly: closed-form feet and knees, and what sensors would send of
-them.
+"""Walks of which the truth is known exactly: closed-form feet and knees, and what sensors send of them.
 
 ::
 

@@ -45,43 +45,59 @@ def record(
     Lost rows are filled as a reader of its file would: the next received sample held back, the slow channels
     interpolated.
     """
-    own, for_errors, for_attitude, for_mag, for_pressure = rng.spawn(5)
-    device, mounting = f"00B4{own.integers(0x1000, 0xFFFF):04X}", _mounting(errors, own)
-    times_s = ticks.at_s(ticks.rows)
-    ends = motion(np.concatenate([ticks.at_s(np.array([-1])), times_s]))
+    own, for_errors, for_others = rng.spawn(3)
+    device = f"00B4{own.integers(0x100, 0xFFF):03X}{list(Placement).index(placement)}"
+    mounting = _mounting(errors, own)
+    ends = motion(ticks.at_s(np.concatenate([[-1], ticks.rows])))
     exact = exact_samples(motion, ends, ticks, sampling)
     force, rate = (mounting.inv().apply(values) for values in exact)
     acc, gyr = _with_errors(force, rate, ticks, errors, for_errors)
     acc, acc_cut = _digitise(acc, errors.acc_step_mps2, errors.acc_range_mps2)
     gyr, gyr_cut = _digitise(gyr, errors.gyr_step_radps, errors.gyr_range_radps)
-    position_m, true_attitude = ends.position_m[1:], ends.rotation[1:] * mounting
-    mag = free = pressure = attitude = None
-    if channels.magnetometer:
-        mag = true_attitude.inv().apply(_field(position_m, errors))
-        mag = _interpolated(mag + errors.mag_noise * for_mag.standard_normal(mag.shape), ticks)
-    if channels.pressure:
-        noise = errors.pressure_noise_pa * for_pressure.standard_normal(len(acc))
-        pressure = _interpolated((_pressure_pa(position_m[:, 2]) + noise)[:, None], ticks)[:, 0]
-    if channels.orientation or channels.free_acceleration:
-        estimate = _device_attitude(true_attitude, times_s, errors, for_attitude)
-        attitude = _interpolated_attitude(estimate, ticks) if channels.orientation else None
-        free = _free_acceleration(estimate, acc, ticks) if channels.free_acceleration else None
     filled = _next_received(ticks)
+    saturated = np.zeros(len(ticks.received), dtype=np.bool_)
+    saturated[ticks.rows] = acc_cut | gyr_cut
     return Sensor(
         placement=placement,
         source=_source(placement, acc, gyr),
         rate_hz=ticks.rate_hz,
         first_packet=errors.first_packet + ticks.start,
         received=ticks.received,
-        saturated=(acc_cut | gyr_cut)[filled],
+        saturated=saturated,
         acc_mps2=acc[filled],
         gyr_radps=gyr[filled],
-        mag=mag,
-        free_acc_mps2=free,
-        attitude=attitude,
-        pressure_pa=pressure,
         device=device,
+        **_further_channels(ends, mounting, acc, ticks, errors, channels, for_others),
     )
+
+
+def _further_channels(
+    ends: Motion,
+    mounting: Rotation,
+    acc: Floats,
+    ticks: Ticks,
+    errors: SensorErrors,
+    channels: Channels,
+    rng: np.random.Generator,
+) -> dict[str, Floats]:
+    """The sensor's fields beside accelerometer and gyroscope; each channel has its own stream of errors."""
+    for_attitude, for_mag, for_pressure = rng.spawn(3)
+    position_m, true_attitude = ends.position_m[1:], ends.rotation[1:] * mounting
+    fields = {}
+    if channels.magnetometer:
+        mag = true_attitude.inv().apply(_field(position_m, errors))
+        fields["mag"] = _interpolated(mag + errors.mag_noise * for_mag.standard_normal(mag.shape), ticks)
+    if channels.pressure:
+        noise = errors.pressure_noise_pa * for_pressure.standard_normal(len(acc))
+        pressure = _pressure_pa(position_m[:, 2]) + noise
+        fields["pressure_pa"] = _interpolated(pressure[:, None], ticks)[:, 0]
+    if channels.orientation or channels.free_acceleration:
+        estimate = _device_attitude(true_attitude, ticks.at_s(ticks.rows), errors, for_attitude)
+        if channels.orientation:
+            fields["attitude"] = _interpolated_attitude(estimate, ticks)
+        if channels.free_acceleration:
+            fields["free_acc_mps2"] = _free_acceleration(estimate, acc, ticks)
+    return fields
 
 
 def _mounting(errors: SensorErrors, rng: np.random.Generator) -> Rotation:

@@ -26,16 +26,13 @@ from gaitlab.simulation.walk import Person, leftward
 # The shape of a gait cycle; tuned so that the angular rate about the pitch axis follows the median of 1,500
 # hand-checked swings of eight healthy adults from 0.3 s before to 0.25 s after foot off and initial contact.
 
-#: The foot speeds up over the first and slows down over the last part of its way (shares of the time it
-#: takes).
+#: The foot speeds up over the first and slows down over the last part of its way (shares of its time).
 _SPEED_UP, _SLOW_DOWN = 0.28, 0.45
-#: The tip of the shoe starts forward before it leaves the floor, the heel comes to rest after it has reached
-#: it (shares of the swing).
+#: The tip of the shoe starts forward before foot off, the heel comes to rest after contact (shares of swing).
 _DRAG, _SLIP = 0.07, 0.07
 #: The heel rises fastest at this share of its rise before foot off.
 _FASTEST_RISE = 0.11
-#: The sole is tipped most soon after foot off, and the toes are highest shortly before contact (shares of
-#: swing).
+#: The sole is tipped most soon after foot off, the toes are highest just before contact (shares of swing).
 _AFTER_OFF, _BEFORE_CONTACT = 0.085, 0.085
 #: Rate at which the toes come down at initial contact, over the mean rate of the landing; its change.
 _LANDING_RATE, _LANDING_BEND = 1.05, 4.5
@@ -43,9 +40,9 @@ _LANDING_RATE, _LANDING_BEND = 1.05, 4.5
 _CUSHION = 0.23
 #: Waves of the shock between initial contact and flat foot; how fast it decays (strongest at 1/6 of the landing).
 _SHOCK_WAVES, _SHOCK_DECAY = 2.5, 5
-#: Roll of the foot in swing, and rocking of the sensor by the shock (rad).
-_SWING_ROLL_RAD, _SHOCK_ROLL_RAD = 0.12, 0.012
-#: Direction of the shock in foot coordinates: backwards, outwards, up.
+#: Roll of the foot in swing; how far the sensor rocks when a shock displaces it (rad per metre).
+_SWING_ROLL_RAD, _ROCKING_RADPM = 0.12, 12.0
+#: Direction of the shock in segment coordinates: forward, outwards, up.
 _SHOCK_DIRECTION = (-0.6, 0.2, 0.77)
 
 
@@ -91,52 +88,37 @@ class FootMotion:
     def sensor(self, t_s: Floats) -> Motion:
         """Movement of the foot's sensor, shaken by each initial contact."""
         sole, shock = self.pose(t_s), self.shock(t_s)
-        shaken = replace(sole, roll=sole.roll + shock * _SHOCK_ROLL_RAD)
-        forward, left, up = self.shock_place(shock)
-        a, b, c = self.person.foot_sensor_m
-        return shaken.motion((forward + a, left + b, up + c))
+        shaken = replace(sole, roll=sole.roll + shock * _ROCKING_RADPM)
+        return shaken.motion(self.shaken_place(self.person.foot_sensor_m, shock))
+
+    def shaken_place(self, place: tuple[float, float, float], shock: Jet) -> tuple[Jet, Jet, Jet]:
+        """A place in segment coordinates while a shock displaces it."""
+        forward, out, up = _SHOCK_DIRECTION
+        left = out * leftward(self.side)
+        return shock * forward + place[0], shock * left + place[1], shock * up + place[2]
 
     def shock(self, t_s: Floats) -> Jet:
-        """A short damped vibration after each initial contact, 1 at its strongest; zero once the foot is
-        flat."""
-        falls = self.footfalls
+        """A short damped vibration (m) after each initial contact; zero once the foot is flat."""
+        falls, gaits = self.footfalls, self.footfalls.gaits
         fall = np.clip(np.searchsorted(falls.initial_contact_s, t_s, side="right") - 1, 0, None)
-        length = np.array([gait.landing_s for gait in falls.gaits])[fall]
-        strength = np.where(fall > 0, falls.effort[fall], 0.0)
-        u = np.clip((t_s - falls.initial_contact_s[fall]) / length, 0.0, 1.0)
-        zero = np.zeros_like(u)
-        inner = Jet(u, np.where((u > 0.0) & (u < 1.0), 1.0 / length, 0.0), zero)
-        k, rest = _SHOCK_DECAY, 1.0 - u
-        g, slope = u * rest**k, rest ** (k - 1) * (1.0 - (k + 1) * u)
-        bend = k * rest ** (k - 2) * ((k + 1) * u - 2.0)
-        peak = (k**k / (k + 1) ** (k + 1)) ** 3
-        envelope = inner.through(
-            g**3 / peak, 3.0 * g**2 * slope / peak, (6.0 * g * slope**2 + 3.0 * g**2 * bend) / peak
-        )
-        return envelope * sin_cos(inner * (2.0 * np.pi * _SHOCK_WAVES))[0] * strength
-
-    def shock_place(self, shock: Jet, share: float = 1.0) -> tuple[Jet, Jet, Jet]:
-        """Displacement (forward, left, up) in metres that a shock gives a sensor."""
-        gait = self.footfalls.gaits[-1]
-        frequency = 2.0 * np.pi * _SHOCK_WAVES / gait.landing_s
-        amplitude = share * gait.heel_strike_mps2 / frequency**2
-        outwards = leftward(self.side)
-        back, out, up = _SHOCK_DIRECTION
-        return shock * (amplitude * back), shock * (amplitude * out * outwards), shock * (amplitude * up)
+        length = np.array([gait.landing_s for gait in gaits])
+        frequency = 2.0 * np.pi * _SHOCK_WAVES / length
+        size: Floats = falls.effort * np.array([gait.heel_strike_mps2 for gait in gaits]) / frequency**2
+        u = np.clip((t_s - falls.initial_contact_s[fall]) / length[fall], 0.0, 1.0)
+        inner = Jet(u, np.where((u > 0.0) & (u < 1.0), 1.0 / length[fall], 0.0), np.zeros_like(u))
+        return _envelope(inner) * sin_cos(inner * (2.0 * np.pi * _SHOCK_WAVES))[0] * size[fall]
 
     def _softening(self, swing_no: np.ndarray, swinging: Bools) -> Floats:
-        """Sine of the pitch below which the foot, in the air, is turned over its edges softly; 0 in
-        contact."""
+        """Sine of the pitch below which the foot is turned over its edges softly; 0 in contact."""
         smallest = [
-            0.9 * np.sin(effort * min(gait.toe_up_rad, gait.heel_rise_rad))
+            0.7 * np.sin(effort * min(gait.toe_up_rad, gait.heel_rise_rad))
             for effort, gait in zip(self.footfalls.effort[1:], self.footfalls.gaits[1:], strict=True)
         ]
         return np.where(swinging, np.array(smallest or [0.0])[swing_no], 0.0)
 
 
 def _swing_at(falls: Footfalls, t_s: Floats) -> tuple[np.ndarray, Bools]:
-    """For each instant the swing under way or next to come (0 is the one after the first contact), and
-    whether it is."""
+    """For each instant the number of the swing under way or else next to come, and whether it is under way."""
     n = max(len(falls.foot_off_s) - 2, 0)
     number = np.searchsorted(falls.initial_contact_s[1:], t_s, side="right")
     number = np.clip(number, 0, n)
@@ -186,8 +168,7 @@ def _tip(falls: Footfalls) -> Track:
 
 
 def _lift(falls: Footfalls) -> Track:
-    """Height of the whole sole over the floor: greatest in mid-swing, until the heel's cushion is pressed
-    flat."""
+    """Height of the whole sole over the floor, until the heel's cushion is pressed flat."""
     start, end = falls.foot_off_s[:-1], falls.initial_contact_s[1:]
     gaits, zero = falls.gaits[1:], np.zeros(len(start))
     height = np.array([gait.lift_m for gait in gaits])
@@ -212,6 +193,15 @@ def _swing_bump(falls: Footfalls) -> Track:
     return _track(knots, values, np.zeros_like(knots), bends, 0.0)
 
 
+def _envelope(u: Jet) -> Jet:
+    """Rises from 0 at u = 0 to 1 at its strongest and falls to 0 at u = 1, smoothly at both ends."""
+    k, x, rest = _SHOCK_DECAY, u.value, 1.0 - u.value
+    g, slope = x * rest**k, rest ** (k - 1) * (1.0 - (k + 1) * x)
+    bend = k * rest ** (k - 2) * ((k + 1) * x - 2.0)
+    peak = (k**k / (k + 1) ** (k + 1)) ** 3
+    return u.through(g**3 / peak, 3.0 * g**2 * slope / peak, (6.0 * g * slope**2 + 3.0 * g**2 * bend) / peak)
+
+
 def _track(knots: Floats, values: Floats, rates: Floats, bends: Floats, constant: float) -> Track:
     """The track through these knots, or a constant where the foot makes no step."""
     if len(knots) == 0:
@@ -220,8 +210,7 @@ def _track(knots: Floats, values: Floats, rates: Floats, bends: Floats, constant
 
 
 def _rolling(tip: Jet, softening: Floats, person: Person) -> tuple[Jet, Jet]:
-    """How far forward and up the ankle's point of the sole goes when the sole tips on its heel or forefoot
-    edge.
+    """How far forward and up the sole goes, under the ankle, when it tips on its heel or forefoot edge.
 
     A convex sole with support function H(θ) rolls by X(θ) = −∫H dθ. With a sharp heel edge h behind and a
     forefoot edge b before the point, H = h·sin θ, X = −h(1 − cos θ) for θ > 0, and H = b·|sin θ|, X = b(1 −

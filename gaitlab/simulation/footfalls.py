@@ -92,6 +92,7 @@ class Course:
 
     @property
     def duration_s(self) -> float:
+        """When the last standing phase ends."""
         return self.spans[-1].end_s
 
 

@@ -55,9 +55,9 @@ class KneeMotion:
     def sensor(self, t_s: Floats) -> Motion:
         """Movement of the sensor on the upper shank."""
         person = self.foot.person
-        forward, left, up = self.foot.shock_place(self.foot.shock(t_s), _SHOCK_SHARE)
         a, b, c = person.knee_sensor_m
-        return self.pose(t_s).motion((forward + a, left + b, up + (c + person.shank_length_m)))
+        shock = self.foot.shock(t_s) * _SHOCK_SHARE
+        return self.pose(t_s).motion(self.foot.shaken_place((a, b, c + person.shank_length_m), shock))
 
 
 def _sway(t_s: Floats, phase: float) -> tuple[Jet, Jet]:

@@ -46,8 +46,10 @@ class Motion:
 
 @dataclass(frozen=True, eq=False)
 class Pose:
-    """A rigid segment: its origin and its turn, yaw about z, then pitch about y (nose down), then roll about
-    x."""
+    """A rigid segment: its origin and its turn.
+
+    First yaw about z, then pitch about the new y (nose down), then roll about the new x, in radians.
+    """
 
     x: Jet
     y: Jet

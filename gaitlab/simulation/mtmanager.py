@@ -1,5 +1,4 @@
-"""Simulated recordings as text files of MT Manager, in the variants that its versions and settings
-produce."""
+"""Simulated recordings as text files of MT Manager, in the variants seen in the field."""
 
 from __future__ import annotations
 
@@ -20,8 +19,7 @@ from gaitlab.simulation.simulate import Simulation
 
 @dataclass(frozen=True)
 class FileStyle:
-    """How a file is written. A channel that the simulation does not have is left out whatever the style
-    wants.
+    """How a file is written. A channel that the simulation does not have is left out.
 
     Attributes
     ----------

@@ -87,8 +87,7 @@ def long_walk(minutes: float, gait: Gait = COMFORTABLE, length_m: float = 30.0) 
 
 
 def example_walk(seed: int = 0) -> Simulation:
-    """A timed 25-foot walk with sensors on both feet and knees and the errors of real ones, for ``gaitlab
-    demo``."""
+    """A timed 25-foot walk with sensors on feet and knees that err as real ones do (for ``gaitlab demo``)."""
     gait = Gait(stride_length_m=1.38, stride_time_s=1.02, variability=0.015)
     return simulate(
         timed_25_foot_walk(gait), TYPICAL_MTW, seed=seed, magnetometer=True, free_acceleration=True

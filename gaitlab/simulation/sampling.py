@@ -60,8 +60,7 @@ class Ticks:
         return (self.start + rows) / self.rate_hz
 
     def gap_mean(self, values: Floats) -> Floats:
-        """Mean of ``values`` (n, k), one for each row, over each received row and the lost ones before it:
-        (m, k)."""
+        """Mean of ``values`` (n, k) over each received row and the lost rows before it, shape (m, k)."""
         spans = np.diff(self.rows, prepend=-1)
         total: Floats = np.add.reduceat(values, self.previous + 1, axis=0)
         return total / spans[:, None]

@@ -39,8 +39,7 @@ def simulate(
     free_acceleration: bool = False,
     sampling: Sampling = "strapdown",
 ) -> Simulation:
-    """Walk a plan with a sensor on each foot and, if wanted, each knee. The same arguments always give the
-    same numbers.
+    """Walk a plan with a sensor on each foot and knee. The same arguments always give the same numbers.
 
     Parameters
     ----------

@@ -70,8 +70,7 @@ class KneeTruth:
 
 @dataclass(frozen=True, eq=False)
 class StepsTruth:
-    """Steps within straight parts, in order of time: each ends with ``side``'s contact, the other foot
-    standing.
+    """Steps within straight parts, in order of time. Each ends with the contact of ``side``.
 
     ``length_m`` is measured along, ``width_m`` across the direction of walking, between the ankles;
     ``time_s`` between the contacts; ``contact_s`` is when the step ended.
@@ -118,8 +117,7 @@ class Truth:
         return min(float(foot.rests_s[0, 1]) for foot in self.feet.values())
 
     def crossing_s(self, course_m: float) -> float | None:
-        """When the first foot has come ``course_m`` forward from where it stood at the start; None where none
-        does.
+        """When the first foot has come ``course_m`` forward from where it stood; None where none does.
 
         The foot is taken at the point of the sole under the ankle; since both feet start side by side on the
         line, this is when the leading foot crosses the end of the course.

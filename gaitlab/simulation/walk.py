@@ -122,10 +122,12 @@ class Gait:
 
     @property
     def landing_s(self) -> float:
+        """Time from initial contact to flat foot."""
         return self.landing_share * self.stride_time_s
 
     @property
     def heel_off_s(self) -> float:
+        """Time from the heel's rise to foot off."""
         return self.heel_off_share * self.stride_time_s
 
     def step_time_s(self, side: Side) -> float:
@@ -150,8 +152,7 @@ class Stand:
 
 @dataclass(frozen=True)
 class Walk:
-    """Walk straight on for a length, or for a number of strides; steps are stretched a little to fit the
-    length."""
+    """Walk straight on for a length (steps are stretched a little to fit it) or a number of strides."""
 
     length_m: float | None = None
     n_strides: int | None = None
@@ -166,8 +167,7 @@ class Walk:
 
 @dataclass(frozen=True)
 class Turn:
-    """Change direction by an angle (positive to the left) over some short steps; default one step for each
-    45°."""
+    """Change direction by an angle, positive to the left, in short steps; one for each 45° if not said."""
 
     angle_rad: float = math.pi
     n_steps: int | None = None
