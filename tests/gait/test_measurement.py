@@ -1,0 +1,68 @@
+"""A measurement carries its interval, and says when it cannot be known."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from gaitlab.gait import definitions as d
+from gaitlab.gait.averages import FEW_STRIDES, mean_of, of_both
+from gaitlab.gait.definitions import DEFINITIONS, GROUPS
+from gaitlab.gait.measurement import MeasuredSide, Status, measured, not_determinable
+from gaitlab.recording.model import Side
+
+
+def test_the_interval_is_the_value_plus_minus_1_96_standard_uncertainties() -> None:
+    one = measured(d.STRIDE_LENGTH, MeasuredSide.LEFT, 1.2, 0.1, 10)
+    assert one.ci95 == pytest.approx((1.2 - 0.1959964, 1.2 + 0.1959964))
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf])
+def test_a_value_that_is_no_number_is_not_determinable(value: float) -> None:
+    one = measured(d.STRIDE_LENGTH, MeasuredSide.LEFT, value, 0.1, 10)
+    assert one.status is Status.NOT_DETERMINABLE
+    assert one.value is None
+    assert one.reason
+
+
+def test_what_is_not_determinable_stays_so() -> None:
+    one = not_determinable(d.CADENCE, MeasuredSide.BOTH, "No step.")
+    assert one.with_attention("Few strides.") == one
+
+
+def test_the_mean_has_independent_errors_divided_by_n_and_common_ones_whole() -> None:
+    values = np.array([1.0, 1.2, 1.1, 1.3, 1.4, 1.2, 1.3, 1.1])
+    one = mean_of(d.STRIDE_LENGTH, Side.LEFT, values, 0.04, 0.01, "none")
+    assert one.value == pytest.approx(1.2)
+    assert one.sd == pytest.approx(math.hypot(0.04 / math.sqrt(8), 0.01))
+    assert one.status is Status.OK
+
+
+def test_few_strides_want_attention_and_none_are_not_determinable() -> None:
+    few = mean_of(d.STRIDE_LENGTH, Side.LEFT, np.ones(FEW_STRIDES - 1), 0.0, 0.0, "none")
+    assert few.status is Status.ATTENTION
+    none = mean_of(d.STRIDE_LENGTH, Side.LEFT, np.array([]), 0.0, 0.0, "There is none.")
+    assert none.status is Status.NOT_DETERMINABLE
+    assert none.reason == "There is none."
+
+
+def test_both_sides_count_alike_and_a_missing_side_is_named() -> None:
+    left = mean_of(d.STRIDE_LENGTH, Side.LEFT, np.full(20, 1.0), 0.0, 0.03, "none")
+    right = mean_of(d.STRIDE_LENGTH, Side.RIGHT, np.full(10, 1.2), 0.0, 0.04, "none")
+    both = of_both(left, right)
+    assert both.value == pytest.approx(1.1)
+    assert both.sd == pytest.approx(0.025)
+    assert both.n == 30
+    missing = of_both(left, not_determinable(d.STRIDE_LENGTH, MeasuredSide.RIGHT, "No foot."))
+    assert missing.status is Status.NOT_DETERMINABLE
+    assert "right" in missing.reason
+
+
+def test_every_definition_is_whole_and_has_a_name_of_its_own() -> None:
+    assert len({one.name for one in DEFINITIONS}) == len(DEFINITIONS) >= 20
+    for one in DEFINITIONS:
+        assert one.group in GROUPS, one.name
+        assert one.text.endswith("."), one.name
+        assert one.reference, one.name
