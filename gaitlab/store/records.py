@@ -99,7 +99,7 @@ def session_counts(scope: Scope, patient_ids: Sequence[str]) -> dict[str, int]:
         .where(Session.site_id == scope.site_id, Session.patient_id.in_(patient_ids))
         .group_by(Session.patient_id)
     )
-    return dict(rows.tuples().all())
+    return dict(rows.all())
 
 
 def session(scope: Scope, session_id: str, *, lock: bool = False) -> Session | None:
@@ -123,7 +123,7 @@ def trial_counts(scope: Scope, session_ids: Sequence[str]) -> dict[str, int]:
         .where(Trial.site_id == scope.site_id, Trial.session_id.in_(session_ids))
         .group_by(Trial.session_id)
     )
-    return dict(rows.tuples().all())
+    return dict(rows.all())
 
 
 def _whole(query: Select[Trial]) -> Select[Trial]:
@@ -188,7 +188,7 @@ def account_names(scope: Scope, account_ids: Sequence[str]) -> dict[str, str]:
             Account.site_id == scope.site_id, Account.id.in_(set(account_ids))
         )
     )
-    return dict(rows.tuples().all())
+    return dict(rows.all())
 
 
 def current(trial: Trial) -> Analysis:
