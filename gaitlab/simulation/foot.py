@@ -119,10 +119,11 @@ class FootMotion:
 
 def _swing_at(falls: Footfalls, t_s: Floats) -> tuple[np.ndarray, Bools]:
     """For each instant the number of the swing under way or else next to come, and whether it is under way."""
-    n = max(len(falls.foot_off_s) - 2, 0)
-    number = np.searchsorted(falls.initial_contact_s[1:], t_s, side="right")
-    number = np.clip(number, 0, n)
-    return number, (t_s > falls.foot_off_s[number]) & (number < len(falls.foot_off_s) - 1)
+    off, contact = falls.foot_off_s[:-1], falls.initial_contact_s[1:]
+    if len(off) == 0:
+        return np.zeros(len(t_s), dtype=np.int_), np.zeros(len(t_s), dtype=np.bool_)
+    number = np.minimum(np.searchsorted(contact, t_s, side="right"), len(off) - 1)
+    return number, (t_s > off[number]) & (t_s < contact[number])
 
 
 def _between(falls: Footfalls, value: Floats) -> Track:
