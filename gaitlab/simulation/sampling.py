@@ -75,11 +75,10 @@ def draw_ticks(
     rows = max(n - start - early, 2)
     received = np.ones(rows, dtype=np.bool_)
     if errors.lost_share > 0.0:
-        chance = errors.lost_share / (errors.lost_burst * (1.0 - errors.lost_share))
-        begins, lengths = rng.random(rows) < chance, rng.geometric(1.0 / errors.lost_burst, rows)
-        for first in np.flatnonzero(begins):
-            received[first : first + lengths[first]] = False
-        received[0] = received[-1] = True
+        between = errors.lost_burst * (1.0 / errors.lost_share - 1.0)
+        runs = rng.geometric([1.0 / between, 1.0 / errors.lost_burst], size=(rows // 2 + 1, 2))
+        received = np.repeat(np.tile([True, False], len(runs)), runs.ravel())[:rows]
+        received[-1] = True
     return Ticks(rate_hz, start, received)
 
 

@@ -78,10 +78,14 @@ class SensorErrors:
     pressure_noise_pa: float = 0.0
 
     def __post_init__(self) -> None:
-        if not 0.0 <= self.lost_share <= 0.8:
-            raise InputError("invalid_errors", "The share of lost packets must lie between 0 and 0.8.")
         if self.lost_burst < 1.0:
             raise InputError("invalid_errors", "A gap is at least one packet long.")
+        most = self.lost_burst / (self.lost_burst + 1.0)
+        if not 0.0 <= self.lost_share <= most:
+            raise InputError(
+                "invalid_errors",
+                f"With gaps of {self.lost_burst:g} packets between 0 and {most:.2f} of all can be lost.",
+            )
 
 
 #: Noise as measured on MTw Awinda sensors at rest (0.015 to 0.02 m/s² and 0.002 rad/s at 100 Hz), offsets as
