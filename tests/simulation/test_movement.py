@@ -6,11 +6,13 @@ from functools import cache
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from gaitlab.recording import Placement, Side
 from gaitlab.recording.model import Floats
-from gaitlab.simulation import Plan, Stand, Turn, Walk, presets
+from gaitlab.simulation import Gait, Plan, Stand, Turn, Walk, presets
 from gaitlab.simulation.body import Body, build_body
 
 GAITS = {
@@ -137,6 +139,36 @@ def test_the_sole_is_never_below_the_floor_and_stands_on_it_in_contact(gait: str
         assert lowest[standing].max() < 1e-9
         swinging = (contact >= 0) & (t > falls.foot_off_s[contact] + 0.1) & (contact < len(falls.flat_s) - 1)
         assert lowest[swinging].min() > 1e-4
+
+
+@settings(max_examples=30, deadline=None)
+@given(
+    gait=st.builds(
+        Gait,
+        stride_length_m=st.floats(0.2, 1.9),
+        stride_time_s=st.floats(0.7, 2.5),
+        step_width_m=st.floats(0.0, 0.3),
+        stance_share=st.floats(0.55, 0.8),
+        toe_up_rad=st.floats(0.02, 0.5),
+        heel_rise_rad=st.floats(0.05, 1.3),
+        lift_m=st.floats(0.0, 0.12),
+        heel_strike_mps2=st.floats(0.0, 120.0),
+    ),
+    angle=st.floats(-3.5, 3.5),
+)
+def test_whatever_the_gait_no_sole_is_below_the_floor_and_no_speed_beyond_reason(
+    gait: Gait, angle: float
+) -> None:
+    other = Walk(2.0, gait=presets.COMFORTABLE)
+    body = build_body(Plan((Stand(1.0), other, Turn(angle), Walk(2.0), Stand(1.0)), gait))
+    t = instants(body, 0.01)
+    for side in Side:
+        foot = body.feet[side]
+        for x in (-foot.person.heel_m, foot.person.forefoot_m):
+            assert foot.pose(t).point((x, 0.0, 0.0))[2].value.min() > -1e-9
+        mean = gait.stride_length_m / (gait.stride_time_s * (1.0 - gait.stance_share))
+        limit = 3.0 * max(mean, 3.5)
+        assert np.linalg.norm(foot.sensor(t).velocity_mps, axis=1).max() < limit
 
 
 @every_gait
