@@ -16,8 +16,9 @@ from sqlalchemy import Engine, create_engine, make_url, text
 from sqlalchemy.exc import OperationalError
 
 from gaitlab.store import schema
-from gaitlab.store.database import normalised_url, open_engine
+from gaitlab.store.database import normalised_url
 
+N_TRIGGERS = 5
 DEFAULT_POSTGRESQL = "postgresql://postgres@127.0.0.1:5432/test"
 
 
@@ -35,14 +36,14 @@ def postgresql_server() -> str:
 
 
 @contextmanager
-def postgresql_database(template: str = "template1") -> Iterator[str]:
+def postgresql_database() -> Iterator[str]:
     """A new database on the server, dropped afterwards; gives its address."""
     server = postgresql_server()
     name = f"gaitlab_test_{secrets.token_hex(8)}"
     admin = create_engine(normalised_url(server), isolation_level="AUTOCOMMIT")
     try:
         with admin.connect() as connection:
-            connection.execute(text(f"CREATE DATABASE {name} TEMPLATE {template}"))
+            connection.execute(text(f"CREATE DATABASE {name}"))
             try:
                 yield make_url(server).set(database=name).render_as_string(hide_password=False)
             finally:
@@ -51,34 +52,69 @@ def postgresql_database(template: str = "template1") -> Iterator[str]:
         admin.dispose()
 
 
+@pytest.fixture(scope="session")
+def postgresql_url() -> Iterator[str]:
+    """Address of one PostgreSQL database for the whole run; making one for each test would take too long."""
+    with postgresql_database() as url:
+        yield url
+
+
 @pytest.fixture(params=["sqlite", "postgresql"])
 def database_url(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[str]:
-    """Address of a new, empty database of each kind."""
+    """Address of an empty database of each kind."""
     if request.param == "sqlite":
         yield f"sqlite:///{tmp_path / 'gaitlab.sqlite3'}"
-    else:
-        with postgresql_database() as url:
-            yield url
-
-
-@pytest.fixture(scope="session")
-def postgresql_template(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """Name of a PostgreSQL database at head, to copy from."""
-    with postgresql_database() as url:
-        engine = open_engine(url, tmp_path_factory.mktemp("template"))
-        schema.migrate(engine)
-        engine.dispose()
-        yield str(make_url(url).database)
+        return
+    url: str = request.getfixturevalue("postgresql_url")
+    with _engine(url) as engine:
+        _drop_everything(engine)
+        yield url
+        _drop_everything(engine)
 
 
 @pytest.fixture(params=["sqlite", "postgresql"])
-def migrated_url(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[str]:
-    """Address of a new database of each kind with all tables (SQLite: made when it is opened)."""
+def migrated_url(request: pytest.FixtureRequest, tmp_path: Path) -> str:
+    """Address of a database of each kind at head and without rows (SQLite: made when it is opened)."""
     if request.param == "sqlite":
-        yield f"sqlite:///{tmp_path / 'gaitlab.sqlite3'}"
-    else:
-        with postgresql_database(request.getfixturevalue("postgresql_template")) as url:
-            yield url
+        return f"sqlite:///{tmp_path / 'gaitlab.sqlite3'}"
+    url: str = request.getfixturevalue("postgresql_url")
+    with _engine(url) as engine:
+        if not _delete_rows(engine):
+            _drop_everything(engine)
+            schema.migrate(engine)
+    return url
+
+
+@contextmanager
+def _engine(url: str) -> Iterator[Engine]:
+    engine = create_engine(normalised_url(url))
+    try:
+        yield engine
+    finally:
+        engine.dispose()
+
+
+def _drop_everything(engine: Engine) -> None:
+    with engine.begin() as connection:
+        connection.execute(text("DROP SCHEMA public CASCADE"))
+        connection.execute(text("CREATE SCHEMA public"))
+
+
+def _delete_rows(engine: Engine) -> bool:
+    """Empty all tables, if they are as the migrations make them."""
+    with engine.begin() as connection:
+        triggers = text("SELECT count(*) FROM pg_trigger WHERE NOT tgisinternal")
+        if (
+            connection.scalar(triggers) != N_TRIGGERS
+            or not schema.at_head(engine)
+            or schema.differences(engine)
+        ):
+            return False
+        connection.execute(text("ALTER TABLE audit_event DISABLE TRIGGER USER"))
+        for table in reversed(schema.METADATA.sorted_tables):
+            connection.execute(table.delete())
+        connection.execute(text("ALTER TABLE audit_event ENABLE TRIGGER USER"))
+    return True
 
 
 def raw(engine: Engine) -> Callable[..., list[tuple[object, ...]]]:

@@ -8,9 +8,9 @@ from sqlalchemy import Engine
 
 from gaitlab.store import schema
 from gaitlab.store.database import Database, open_engine
-from tests.databases import database_url, migrated_url, postgresql_template
+from tests.databases import database_url, migrated_url, postgresql_url
 
-__all__ = ["database_url", "migrated_url", "postgresql_template"]
+__all__ = ["database_url", "migrated_url", "postgresql_url"]
 
 
 @pytest.fixture
