@@ -188,8 +188,9 @@ class _Layer:
         else:
             self.now += gait.heel_off_s + swing
         old.foot_off = self.now - swing
-        old.heel_off = old.foot_off - gait.heel_off_s
-        if old.heel_off < old.flat + 0.02 * gait.stride_time_s:
+        flat_s = old.foot_off - old.flat
+        old.heel_off = old.foot_off - min(gait.heel_off_s, 0.8 * flat_s)
+        if flat_s < 0.1 * gait.stride_time_s:
             raise InputError(
                 "invalid_plan",
                 "The plan leaves a foot no time to rest.",

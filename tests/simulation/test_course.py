@@ -166,3 +166,19 @@ def test_what_cannot_be_walked_is_refused_in_words(make: object) -> None:
     with pytest.raises(InputError) as refused:
         make()
     assert refused.value.message.endswith(".")
+
+
+def test_with_gait_changes_the_gait_and_keeps_the_course() -> None:
+    plan = presets.timed_25_foot_walk()
+    wide = plan.with_gait(step_width_m=0.2)
+    assert wide.legs == plan.legs
+    np.testing.assert_allclose(simulate(wide, knees=False).truth.steps.width_m, 0.2, atol=1e-9)
+
+
+def test_the_example_walk_crosses_25_feet_with_four_sensors() -> None:
+    example = presets.example_walk()
+    assert len(example.recording.sensors) == 4
+    crossing = example.truth.crossing_s(presets.T25FW_M)
+    assert crossing is not None
+    assert 3.0 < crossing - example.truth.first_movement_s < 8.0
+    assert all(sensor.n_lost > 0 for sensor in example.recording.sensors.values())
