@@ -10,7 +10,16 @@ from gaitlab.report.document import Report, SessionInfo, Subject, TrialReport
 from gaitlab.report.environment import template_environment
 from gaitlab.report.figures import FIGURES, Figure, figures
 from gaitlab.report.html import report_html, style_source
-from gaitlab.report.pdf import report_pdf
+from gaitlab.report.pdf import load_fonts, report_pdf
+
+
+def warm_up() -> None:
+    """Load plotting and typesetting now, about a second, so that the first report does not wait for them."""
+    from gaitlab.report.figures import canvas
+
+    canvas.Sheet(10, 10)
+    load_fonts()
+
 
 __all__ = [
     "FIGURES",
@@ -25,4 +34,5 @@ __all__ = [
     "report_pdf",
     "style_source",
     "template_environment",
+    "warm_up",
 ]

@@ -28,7 +28,7 @@ def report_pdf(report: Report) -> bytes:
     data = _plain(report)
     data.pop("created_at")
     system = not _covered(data)
-    fonts, families = _fonts(system)
+    fonts, families = load_fonts(system)
     with tempfile.TemporaryDirectory() as nothing:
         return typst.compile(
             (data_folder("templates") / "report.typ").read_bytes(),
@@ -40,7 +40,7 @@ def report_pdf(report: Report) -> bytes:
             format="pdf",
             sys_inputs={"report": json.dumps(data, ensure_ascii=False), "fonts": json.dumps(families)},
             pdf_standards=["ua-1", "a-3a"],
-            timestamp=report.created_at,
+            timestamp=report.created_at.replace(microsecond=0),
         )
 
 
@@ -75,7 +75,7 @@ def _font_folder() -> Path:
 
 
 @functools.cache
-def _fonts(system: bool) -> tuple[Any, list[str]]:
+def load_fonts(system: bool = False) -> tuple[Any, list[str]]:
     """The fonts, and their families in the order of trying; the last one has a sign for everything."""
     import typst
 

@@ -88,6 +88,8 @@ def verdict(result: Result) -> Verdict:
     reserved = [p for p in known if p.status == "attention"]
     missing = [p for p in key if p.value is None]
     loss = _loss(result)
+    if not key:
+        return Verdict("not_determinable", "Not usable", "The analysis has no parameters.")
     said = [f"{len(known)} of {count(len(key), 'key value')} determined"]
     if reserved:
         said.append(f"{len(reserved)} with attention{_names(reserved)}")

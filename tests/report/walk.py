@@ -261,7 +261,9 @@ def result(
             for side in sides
             if knees
         },
-        walk=Walk(
+        walk=Walk(straights=(), turns=(), closing_error_m={})
+        if not sides
+        else Walk(
             straights=(Interval(start_s=3.0, end_s=11.2), Interval(start_s=13.0, end_s=22.0)),
             turns=(Turn(start_s=11.2, end_s=13.0, angle_deg=178.6),),
             closing_error_m={side.value: 0.12 for side in sides},

@@ -24,7 +24,7 @@ from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import IdentityTransform
 
 from gaitlab.recording.model import Floats
-from gaitlab.report.figures.decimate import envelope, spans
+from gaitlab.report.figures.decimate import envelope, shares, spans
 from gaitlab.report.figures.model import Figure, Scene
 from gaitlab.report.figures.style import INK, LOST_KEY, MUTED, REST_KEY, RULE, SMALL_PT, TEXT_PT, Stroke
 from gaitlab.report.figures.svg import tidy
@@ -38,6 +38,7 @@ _FONTS = {
     for bold in (False, True)
 }
 _MARKER_PT = 3.8
+_STRIP_PT = 3.0
 
 
 class Sheet:
@@ -201,15 +202,21 @@ class Panel:
         self.sheet.line(self.across(x[keep]), self.up(y[keep]), stroke, width)
 
     def bands(self, series: SensorSeries) -> None:
-        """Rests as pale bands over the whole height; lost samples as a thin strip along the bottom."""
-        finest = 0.5 * (self.x[1] - self.x[0]) / self.wide
-        for mask, height, colour, order in (
-            (series.rest, self.high, REST_KEY[1], 0.2),
-            (series.lost, 3.0, LOST_KEY[1], 2.5),
-        ):
-            start, end = self.across(spans(series.t_s, mask, finest)).T
-            floor = np.full_like(start, self.bottom)
-            self.sheet.boxes(np.column_stack((start, end, floor, floor + height)), colour, order)
+        """Rests as pale bands over the whole height; lost samples as a thin strip along the bottom.
+
+        The strip has its full height from a tenth lost and less where less is lost, so that 2 % of an hour does not
+        look like all of it.
+        """
+        rest = spans(series.t_s, series.rest, 0.5 * (self.x[1] - self.x[0]) / self.wide)
+        self._boxes(rest[:, 0], rest[:, 1], np.full(len(rest), self.high), REST_KEY[1], 0.2)
+        lost = shares(series.t_s, series.lost, round(self.wide))
+        height = _STRIP_PT * np.clip(lost[:, 2] / 0.1, 0.15, 1.0)
+        self._boxes(lost[:, 0], lost[:, 1], height, LOST_KEY[1], 2.5)
+
+    def _boxes(self, start: Floats, end: Floats, height: Floats, colour: str, order: float) -> None:
+        floor = np.full(len(start), self.bottom)
+        corners = np.column_stack((self.across(start), self.across(end), floor, floor + height))
+        self.sheet.boxes(corners, colour, order)
 
 
 def _ticks(limits: tuple[float, float], most: int) -> list[tuple[float, str]]:

@@ -34,18 +34,27 @@ def thin(n: int, most: int) -> NDArray[np.intp]:
     return np.unique(np.linspace(0, n - 1, most).round().astype(np.intp))
 
 
-def spans(t_s: Floats, mask: Bools, finest_s: float = 0.0) -> Floats:
-    """Intervals ``[start, end)`` in which ``mask`` holds, shape (k, 2), in seconds.
+def spans(t_s: Floats, mask: Bools, shortest_s: float = 0.0) -> Floats:
+    """Intervals ``[start, end)`` of at least ``shortest_s`` in which ``mask`` holds, shape (k, 2), in seconds.
 
-    Intervals closer than ``finest_s`` are drawn as one and shorter ones are widened to it, so that a single
-    lost sample can still be seen and an hour of them does not give a hundred thousand rectangles.
+    What is too short to be seen is left out, not widened: an hour of steps must not look like an hour of rest.
     """
     if len(t_s) == 0 or not mask.any():
         return np.empty((0, 2))
     edges = np.flatnonzero(np.diff(np.concatenate(([False], mask, [False])).astype(np.int8)))
     period = (t_s[-1] - t_s[0]) / (len(t_s) - 1) if len(t_s) > 1 else 0.0
-    start, end = t_s[edges[::2]], t_s[edges[1::2] - 1] + period
-    end = np.maximum(end, start + finest_s)
-    apart = np.flatnonzero(start[1:] - end[:-1] >= finest_s)
-    first, last = np.concatenate(([0], apart + 1)), np.concatenate((apart, [len(start) - 1]))
-    return np.column_stack((start[first], np.maximum.reduceat(end, first)[: len(last)]))
+    found = np.column_stack((t_s[edges[::2]], t_s[edges[1::2] - 1] + period))
+    long: Floats = found[found[:, 1] - found[:, 0] >= shortest_s]
+    return long
+
+
+def shares(t_s: Floats, mask: Bools, bins: int) -> Floats:
+    """Rows of (start, end, share of ``mask``) for the stretches in which it holds at all, shape (k, 3)."""
+    if len(t_s) == 0 or not mask.any():
+        return np.empty((0, 3))
+    size = max(1, -(-len(t_s) // bins))
+    first = np.arange(0, len(t_s), size)
+    last = np.append(first[1:], len(t_s)) - 1
+    share = np.add.reduceat(mask.astype(float), first) / (last - first + 1)
+    period = (t_s[-1] - t_s[0]) / (len(t_s) - 1) if len(t_s) > 1 else 0.0
+    return np.column_stack((t_s[first], t_s[last] + period, share))[share > 0]
