@@ -21,7 +21,8 @@ def print_result(result: Result) -> None:
             _print_row([p for p in result.parameters if p.name == name])
     _print_reasons(result)
     for warning in result.warnings:
-        print(f"! {warning.message}")
+        worn = (warning.placement or "").replace("_", " ")
+        print(f"! {warning.message}" if worn in warning.message else f"! {worn}: {warning.message}")
 
 
 def _print_row(same: Sequence[Parameter]) -> None:

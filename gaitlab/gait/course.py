@@ -19,6 +19,8 @@ from gaitlab.recording.model import Bools, Floats, Side
 
 START_RULE = "first foot off after standing"
 BOTH = MeasuredSide.BOTH
+END_SHARE = 0.05
+"""A straight walk that ends farther than this share from the end of the course did not end there."""
 NOBODY_WALKS = "Nobody walks in this recording."
 
 
@@ -96,10 +98,14 @@ def timed_walk(feet: Mapping[Side, FootGait], timed: TimedCourse | str, course: 
     until = course.turns[0].start_s if course.turns else course.straights[0][1] + 1.0
     excess = forward_reach(feet, until) - timed.course_m
     sd = float(np.mean([_place_sd(foot, timed.course_m) for foot in feet.values()]))
+    check = measured(d.COURSE_CHECK, BOTH, 100.0 * excess / timed.course_m, 100.0 * sd / timed.course_m, 1)
+    if abs(excess) > END_SHARE * timed.course_m:
+        beyond = "gone on past" if excess > 0 else "turned before"
+        check = check.with_attention(f"The person seems to have {beyond} the end of the course: no check of scale then.")
     return [
         measured(d.WALK_TIME, BOTH, duration, timed.sd_s, 1),
         measured(d.WALK_SPEED, BOTH, speed, speed * timed.sd_s / duration, 1),
-        measured(d.COURSE_CHECK, BOTH, 100.0 * excess / timed.course_m, 100.0 * sd / timed.course_m, 1),
+        check,
     ]
 
 

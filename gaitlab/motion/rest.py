@@ -165,7 +165,8 @@ def find_rests(
     if level is None:
         return no_rests()
     valleys = _one_per_cycle(level, p)
-    borders = [0, *((a.last + b.first) // 2 for a, b in itertools.pairwise(valleys)), len(level)]
+    swings = [a.last + int(np.argmax(level[a.last : b.first])) for a, b in itertools.pairwise(valleys)]
+    borders = [0, *swings, len(level)]
     extents = [
         _extent(level, valley, low, high, p)
         for valley, (low, high) in zip(valleys, itertools.pairwise(borders), strict=True)
