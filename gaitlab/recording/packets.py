@@ -103,10 +103,9 @@ def unwrap(
         hint = "Rows were edited, sorted or joined; export the recording again."
         return InputError(code, message, hint, file=file, line=line_of(row), column=heading)
 
-    whole = np.isfinite(counter) & (np.abs(counter) < _LARGEST)
-    whole &= np.floor(np.where(whole, counter, 0.5)) == counter
-    if not whole.all() or counter.min() < 0:
-        row = int(np.argmin(whole & (counter >= 0)))
+    whole = (counter >= 0) & (counter < _LARGEST) & (np.floor(counter) == counter)
+    if not whole.all():
+        row = int(np.argmin(whole))
         raise refuse(
             "counter_not_integer", row, "The packet counter is missing or not a whole number from 0."
         )

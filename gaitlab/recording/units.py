@@ -13,6 +13,7 @@ from gaitlab.recording import heading as h
 from gaitlab.recording.attitude import rotation_angle_rad, up_component
 from gaitlab.recording.heading import Header
 from gaitlab.recording.model import Finding, Floats
+from gaitlab.recording.rates import DEFAULT_HZ
 from gaitlab.recording.samples import Samples
 
 LineOf = Callable[[int], int]
@@ -148,9 +149,9 @@ def _check_range(
 
 def _ratio_to_orientation(samples: Samples, params: UnitParams = PARAMS) -> float | None:
     """Median of the gyroscope's rate over the orientation's; None where it cannot be told."""
-    rate_hz = samples.rates.stamps_hz or samples.rates.header_hz
-    if samples.attitude is None or samples.gyr_radps is None or rate_hz is None or len(samples.packet) < 2:
+    if samples.attitude is None or samples.gyr_radps is None or len(samples.packet) < 2:
         return None
+    rate_hz = samples.rates.stamps_hz or samples.rates.header_hz or DEFAULT_HZ
     angle_rad = rotation_angle_rad(samples.attitude)
     turning_radps = angle_rad * rate_hz / np.diff(samples.packet)
     turning = turning_radps > params.turning_radps

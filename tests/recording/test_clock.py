@@ -11,12 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gaitlab.errors import InputError
-from gaitlab.recording import Finding, Placement, Recording, Sensor, read_files
+from gaitlab.recording import Placement, Sensor, read_files
 from gaitlab.recording.attitude import from_euler, slerp
 from gaitlab.recording.packets import find_gaps, regular_grid
-from gaitlab.recording.rates import decide_rate, rate_from_stamps
-from gaitlab.recording.samples import Rates
-from tests.recording.texts import ACC, GYR, LONG_HEADER, MAG, QUATERNION, Floats, Text, mt_text
+from tests.recording.texts import ACC, GYR, LONG_HEADER, MAG, QUATERNION, Floats, codes, mt_text, read_two
 
 N = 60
 WHOLE = mt_text(ACC, GYR, MAG, QUATERNION, n=N)
@@ -26,18 +24,6 @@ kept_rows = st.sets(st.integers(1, N - 2), min_size=10).map(lambda kept: sorted(
 def signals(sensor: Sensor) -> list[Floats]:
     values = [sensor.acc_mps2, sensor.gyr_radps, sensor.mag, sensor.attitude]
     return [value for value in values if value is not None]
-
-
-def read_two(left: Text, right: Text, rate_hz: float | None = None) -> Recording:
-    files = {
-        Placement.LEFT_FOOT: replace(left, name="left.txt").file,
-        Placement.RIGHT_FOOT: replace(right, name="right.txt").file,
-    }
-    return read_files(files, rate_hz)
-
-
-def codes(findings: tuple[Finding, ...]) -> list[str]:
-    return [finding.code for finding in findings]
 
 
 @settings(max_examples=60, deadline=None)
@@ -161,11 +147,26 @@ def test_mostly_empty_magnetometer_is_left_out_and_told() -> None:
     assert "column_not_used" in codes(recording.findings)
 
 
-def test_lost_orientation_turns_at_constant_rate() -> None:
+def test_lost_orientation_turns_on_at_constant_rate() -> None:
+    yaw_deg = np.linspace(0.0, 174.0, 30)
+    turning = from_euler(np.zeros(30), np.zeros(30), yaw_deg)
+    text = mt_text(ACC, GYR, QUATERNION, n=30)
+    cells = [
+        [*line[:7], *(f"{value:.9f}" for value in row)] for line, row in zip(text.cells, turning, strict=True)
+    ]
+    kept = [0, 1, 9, 10, 14, 29]
+    attitude = replace(text, cells=cells).keep_rows(kept).read().attitude
+    assert attitude is not None
+    np.testing.assert_allclose(attitude, turning, atol=1e-7)
+
+
+def test_slerp_takes_the_short_way_whatever_the_signs() -> None:
     angles = np.array([0.0, 90.0])
     ends = from_euler(np.zeros(2), np.zeros(2), angles)
     third = slerp(ends[:1], ends[1:], np.array([1 / 3]))
     np.testing.assert_allclose(third, from_euler(np.zeros(1), np.zeros(1), np.array([30.0])), atol=1e-12)
+    np.testing.assert_allclose(slerp(ends[:1], -ends[1:], np.array([1 / 3])), third, atol=1e-12)
+    np.testing.assert_allclose(slerp(ends[:1], ends[:1], np.array([0.5])), ends[:1], atol=1e-12)
 
 
 @given(st.lists(st.integers(1, 9), min_size=1, max_size=50))
@@ -212,86 +213,6 @@ def test_one_sensor_given_for_two_placements() -> None:
         read_two(text, text.put(0, "Acc_X", "0.5"))
     assert caught.value.code == "same_device"
     assert "00B42D4B" in caught.value.message
-
-
-# --- rate --------------------------------------------------------------------------------------------------
-
-
-def with_stamps(step: float, text: Text = WHOLE) -> Text:
-    return text.with_column(
-        "SampleTimeFine", [str(round(7_000 + step * row)) for row in range(len(text.cells))]
-    )
-
-
-def test_rate_from_the_header() -> None:
-    assert replace(WHOLE, comments=("// Update Rate: 40.0Hz",)).read().rate_hz == 40.0
-
-
-@pytest.mark.parametrize(
-    ("step", "rate_hz"), [(10_000, 100.0), (16_666.667, 60.0), (100, 100.0), (166.667, 60.0)]
-)
-def test_rate_from_time_stamps_in_microseconds_or_ticks(step: float, rate_hz: float) -> None:
-    text = replace(with_stamps(step), comments=())
-    recording = read_files({Placement.LEFT_FOOT: text.file})
-    assert recording.rate_hz == rate_hz
-    assert recording.findings == ()
-
-
-@pytest.mark.parametrize(
-    "line", ["// Update Rate: 60.0Hz", "// Sample rate: 60", "Frequency: 60,0 Hz", "//  Update Rate: 60 Hz "]
-)
-def test_rate_lines(line: str) -> None:
-    assert replace(WHOLE, comments=(line,)).read().rate_hz == 60.0
-
-
-def test_rate_from_time_stamps_that_wrap_and_have_gaps() -> None:
-    packet = np.delete(np.arange(1000), np.arange(300, 420))
-    stamp = np.mod(2.0**32 - 4_000_000 + 10_000.0 * packet, 2.0**32).astype(np.float64)
-    assert rate_from_stamps(packet, stamp) == 100.0
-
-
-def test_header_that_contradicts_the_time_stamps_loses_and_is_told() -> None:
-    text = with_stamps(16_667)
-    recording = read_files({Placement.LEFT_FOOT: text.file})
-    assert recording.rate_hz == 60.0
-    assert codes(recording.findings) == ["rate_contradiction"]
-    assert "100 Hz" in recording.findings[0].message
-
-
-def test_rate_given_by_the_user_wins_and_says_so() -> None:
-    recording = read_files({Placement.LEFT_FOOT: WHOLE.file}, rate_hz=50)
-    assert recording.rate_hz == 50.0
-    assert codes(recording.findings) == ["rate_overridden"]
-    assert decide_rate(Rates(100.0, None), 100.0).findings == ()  # type: ignore[union-attr]
-
-
-def test_unknown_rate_is_assumed_aloud() -> None:
-    recording = read_files({Placement.LEFT_FOOT: replace(WHOLE, comments=()).file})
-    assert recording.rate_hz == 100.0
-    assert codes(recording.findings) == ["rate_assumed"]
-
-
-def test_unknown_rate_is_taken_from_the_other_sensor() -> None:
-    left = replace(mt_text(), comments=("// Update Rate: 60.0Hz",))
-    recording = read_two(left, replace(mt_text(first_packet=480), comments=()))
-    assert recording.rate_hz == 60.0
-    assert [(finding.code, finding.placement) for finding in recording.findings] == [
-        ("rate_assumed", Placement.RIGHT_FOOT)
-    ]
-
-
-def test_different_rates() -> None:
-    with pytest.raises(InputError) as caught:
-        read_two(mt_text(), replace(mt_text(first_packet=480), comments=("// Update Rate: 60.0Hz",)))
-    assert caught.value.code == "different_rates"
-    assert "60 Hz" in caught.value.message
-
-
-@pytest.mark.parametrize("rate_hz", [0.0, -100.0, float("nan"), float("inf"), 1e9])
-def test_impossible_rate(rate_hz: float) -> None:
-    with pytest.raises(InputError) as caught:
-        read_files({Placement.LEFT_FOOT: WHOLE.file}, rate_hz=rate_hz)
-    assert caught.value.code == "bad_rate"
 
 
 def test_arrays_cannot_be_changed() -> None:

@@ -8,10 +8,12 @@ import struct
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
+from typing import IO
 
 import pytest
 
 from gaitlab.errors import InputError, TooLarge
+from gaitlab.recording import archive
 from gaitlab.recording.intake import InputFile, Limits, expand, load
 
 TEXT = b"PacketCounter\tAcc_X\n1\t2.0\n" * 50
@@ -23,6 +25,9 @@ def zipped(entries: Mapping[str, bytes], method: int = zipfile.ZIP_DEFLATED) -> 
         for name, content in entries.items():
             archive.writestr(zipfile.ZipInfo(name), content, method)
     return buffer.getvalue()
+
+
+LONG_DIRECTORY = zipped({f"{number:0200d}": b"" for number in range(4000)})
 
 
 def with_entry(info: zipfile.ZipInfo, content: bytes = TEXT) -> bytes:
@@ -142,8 +147,9 @@ def test_a_hundred_thousand_entries_are_refused_before_they_are_listed(
     assert refusal(content).code == "zip_entries"
 
 
-def test_end_record_that_lies_about_the_number_of_entries() -> None:
-    content = bytearray(zipped({f"{number:0200d}": b"" for number in range(4000)}))
+def test_end_record_that_lies_about_the_number_of_entries(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(zipfile, "ZipFile", None)
+    content = bytearray(LONG_DIRECTORY)
     at = content.rindex(b"PK\x05\x06")
     struct.pack_into("<2H", content, at + 8, 1, 1)
     assert refusal(bytes(content)).code == "zip_entries"
@@ -181,6 +187,17 @@ def test_forged_sizes_in_the_table_of_contents() -> None:
     at = content.index(b"PK\x01\x02")
     struct.pack_into("<L", content, at + 24, 10)  # declares 10 bytes
     assert refusal(bytes(content)).code in ("zip_bomb", "zip_broken")
+
+
+def test_bytes_are_counted_while_they_come_out_whatever_was_declared() -> None:
+    class Endless(zipfile.ZipFile):
+        def open(self, *_: object, **__: object) -> IO[bytes]:
+            return io.BytesIO(TEXT * 2)
+
+    content = zipped({"a.txt": TEXT})
+    with Endless(io.BytesIO(content)) as opened, pytest.raises(TooLarge) as caught:
+        archive._extract(InputFile("trial.zip", content), opened, opened.infolist(), Limits())
+    assert caught.value.code == "zip_bomb"
 
 
 def test_zip64_end_record_is_refused() -> None:

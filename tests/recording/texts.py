@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitlab.recording import InputFile, Placement, Sensor, read_files
+from gaitlab.recording import Finding, InputFile, Placement, Recording, Sensor, read_files
 
 Floats = NDArray[np.float64]
 
@@ -39,6 +39,7 @@ GYR = ("Gyr_X", "Gyr_Y", "Gyr_Z")
 MAG = ("Mag_X", "Mag_Y", "Mag_Z")
 QUATERNION = ("Quat_q0", "Quat_q1", "Quat_q2", "Quat_q3")
 EULER = ("Roll", "Pitch", "Yaw")
+MATRIX = tuple(f"Mat[{row}][{column}]" for row in (1, 2, 3) for column in (1, 2, 3))
 
 
 def motion(n: int = 60, rate_hz: float = 100.0) -> dict[str, Floats]:
@@ -152,3 +153,17 @@ def mt_text(
         for row in range(n)
     ]
     return Text(["PacketCounter", *headings], cells)
+
+
+def read_two(left: Text, right: Text, rate_hz: float | None = None) -> Recording:
+    """A recording of two feet."""
+    files = {
+        Placement.LEFT_FOOT: replace(left, name="left.txt").file,
+        Placement.RIGHT_FOOT: replace(right, name="right.txt").file,
+    }
+    return read_files(files, rate_hz)
+
+
+def codes(findings: tuple[Finding, ...]) -> list[str]:
+    """The codes of findings, in order."""
+    return [finding.code for finding in findings]
