@@ -36,7 +36,9 @@ def mean_of(
 def with_count(measurement: Measurement) -> Measurement:
     """Mark a value that rests on few strides."""
     if 0 < measurement.n < FEW_STRIDES:
-        return measurement.with_attention(f"It rests on {measurement.n} only: fewer than {FEW_STRIDES}.")
+        return measurement.with_attention(
+            f"It rests on {measurement.n} only; a mean of fewer than {FEW_STRIDES} says little."
+        )
     return measurement
 
 
@@ -54,5 +56,7 @@ def of_both(left: Measurement, right: Measurement) -> Measurement:
     sd = 0.5 * float(np.hypot(left.sd, right.sd))
     both = measured(definition, MeasuredSide.BOTH, value, sd, left.n + right.n)
     if min(left.n, right.n) < FEW_STRIDES:
-        return both.with_attention(f"It rests on {left.n} of the left and {right.n} of the right only.")
+        return both.with_attention(
+            f"It rests on {left.n} of the left and {right.n} of the right only; a mean of fewer than {FEW_STRIDES} says little."
+        )
     return both

@@ -101,7 +101,9 @@ def timed_walk(feet: Mapping[Side, FootGait], timed: TimedCourse | str, course: 
     check = measured(d.COURSE_CHECK, BOTH, 100.0 * excess / timed.course_m, 100.0 * sd / timed.course_m, 1)
     if abs(excess) > END_SHARE * timed.course_m:
         beyond = "gone on past" if excess > 0 else "turned before"
-        check = check.with_attention(f"The person seems to have {beyond} the end of the course: no check of scale then.")
+        check = check.with_attention(
+            f"The person seems to have {beyond} the end of the course: no check of scale then."
+        )
     return [
         measured(d.WALK_TIME, BOTH, duration, timed.sd_s, 1),
         measured(d.WALK_SPEED, BOTH, speed, speed * timed.sd_s / duration, 1),

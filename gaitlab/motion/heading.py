@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from gaitlab.motion.foot import heading_change
-from gaitlab.motion.model import FootMotion, Indices
+from gaitlab.motion.model import FootMotion
 from gaitlab.recording.model import Bools, Floats, Side
 
 
@@ -65,14 +65,48 @@ class Course:
 
 def turning_strides(foot: FootMotion, params: HeadingParams | None = None) -> Bools:
     """True for each stride (from one rest to the next) in which the foot turns, shape (k − 1,)."""
-    p = params or HeadingParams()
-    change = heading_change(foot, foot.rests)
+    return _turning(heading_change(foot, foot.rests), params or HeadingParams())
+
+
+def _turning(change: Floats, p: HeadingParams) -> Bools:
     turning: Bools = np.abs(change) >= p.stride_turn_rad
-    for first in range(len(change) - p.curve_strides + 1):
+    share = np.abs(change) >= 0.5 * p.curve_turn_rad / p.curve_strides
+    total = (
+        np.convolve(change, np.ones(p.curve_strides), mode="valid") if len(change) >= p.curve_strides else []
+    )
+    for first in np.flatnonzero(np.abs(total) >= p.curve_turn_rad):
         window = slice(first, first + p.curve_strides)
-        if abs(change[window].sum()) >= p.curve_turn_rad:
-            turning[window] |= np.abs(change[window]) >= 0.5 * p.curve_turn_rad / p.curve_strides
+        turning[window] |= share[window]
     return turning
+
+
+@dataclass(frozen=True, eq=False)
+class _Swings:
+    """Movements of a foot from rest to rest: when it leaves and reaches, how far its heading changes, where it rests."""
+
+    leave_s: Floats
+    reach_s: Floats
+    change_rad: Floats
+    turning: Bools
+    place_m: Floats
+
+    @classmethod
+    def of(cls, foot: FootMotion, params: HeadingParams) -> _Swings:
+        last = np.maximum(foot.rests.end - 1, foot.rests.start)
+        change = heading_change(foot, foot.rests)
+        leave, reach = foot.time_s[last[:-1]], foot.time_s[foot.rests.start[1:]]
+        return cls(leave, reach, change, _turning(change, params), foot.rest_position_m[:, :2])
+
+    def turn_within(self, start_s: float, end_s: float) -> float:
+        """Change of heading over the turning strides in an interval."""
+        inside = (self.reach_s > start_s) & (self.leave_s < end_s) & self.turning
+        return float(self.change_rad[inside].sum())
+
+    def places_within(self, start_s: float, end_s: float) -> Floats:
+        """Places (m, 2) of the rests between which the foot walked in an interval."""
+        middle = 0.5 * (self.leave_s + self.reach_s)
+        low, high = np.searchsorted(middle, start_s, "left"), np.searchsorted(middle, end_s, "right")
+        return self.place_m[low : high + 1] if high > low else self.place_m[:0]
 
 
 def find_course(feet: Mapping[Side, FootMotion], params: HeadingParams | None = None) -> Course:
@@ -81,27 +115,21 @@ def find_course(feet: Mapping[Side, FootMotion], params: HeadingParams | None = 
     Turning strides with no straight part between them are one turn.
     """
     p = params or HeadingParams()
-    walking = _walking_span(feet)
-    if walking is None:
+    swings = [_Swings.of(foot, p) for foot in feet.values() if len(foot.rests) > 1]
+    if not swings:
         return Course((), ())
-    spans: list[tuple[float, float]] = []
-    for foot in feet.values():
-        turning = turning_strides(foot, p)
-        leave, reach = _swing_rows(foot)
-        spans += [
-            (float(foot.time_s[leave[k]]), float(foot.time_s[reach[k]])) for k in np.flatnonzero(turning)
-        ]
+    spans = [
+        (float(one.leave_s[k]), float(one.reach_s[k])) for one in swings for k in np.flatnonzero(one.turning)
+    ]
 
     def is_straight(start: float, end: float) -> bool:
-        return end > start and _longest(feet, start, end) >= p.min_straight_m
+        return end > start and _longest(swings, start, end) >= p.min_straight_m
 
     merged = _merged(spans, is_straight)
-    turns = [
-        TurnSpan(a, b, float(np.mean([_turn_within(foot, a, b) for foot in feet.values()])))
-        for a, b in merged
-    ]
+    turns = [TurnSpan(a, b, float(np.mean([one.turn_within(a, b) for one in swings]))) for a, b in merged]
     turns = [turn for turn in turns if abs(turn.angle_rad) >= p.turn_rad]
-    edges = [walking[0], *itertools.chain.from_iterable((t.start_s, t.end_s) for t in turns), walking[1]]
+    first, last = min(float(one.leave_s[0]) for one in swings), max(float(one.reach_s[-1]) for one in swings)
+    edges = [first, *itertools.chain.from_iterable((t.start_s, t.end_s) for t in turns), last]
     parts = zip(edges[::2], edges[1::2], strict=True)
     return Course(tuple(turns), tuple((a, b) for a, b in parts if is_straight(a, b)))
 
@@ -125,7 +153,7 @@ def to_common_frame(
     aligned: dict[Side, FootMotion] = {}
     moves: dict[Side, tuple[float, Floats]] = {}
     for side, foot in feet.items():
-        yaw = -_direction(foot, course)
+        yaw = -_direction(foot, course, p)
         lateral = 0.0
         if len(feet) == 2:
             lateral = 0.5 * p.standing_width_m * (1.0 if side is Side.LEFT else -1.0)
@@ -135,12 +163,6 @@ def to_common_frame(
         aligned[side] = turned.moved(shift)
         moves[side] = (yaw, shift)
     return aligned, moves
-
-
-def _swing_rows(foot: FootMotion) -> tuple[Indices, Indices]:
-    """Last row of each rest that is left and first row of the next."""
-    leave = np.maximum(foot.rests.end[:-1] - 1, foot.rests.start[:-1])
-    return leave, foot.rests.start[1:]
 
 
 def _merged(
@@ -156,52 +178,25 @@ def _merged(
     return merged
 
 
-def _turn_within(foot: FootMotion, start_s: float, end_s: float) -> float:
-    leave, reach = _swing_rows(foot)
-    change = heading_change(foot, foot.rests)
-    inside = (foot.time_s[reach] > start_s) & (foot.time_s[leave] < end_s) & turning_strides(foot)
-    return float(change[inside].sum())
-
-
-def _walking_span(feet: Mapping[Side, FootMotion]) -> tuple[float, float] | None:
-    """From the first leaving of a rest to the last coming to one."""
-    leaves, reaches = [], []
-    for foot in feet.values():
-        if len(foot.rests) > 1:
-            leave, reach = _swing_rows(foot)
-            leaves.append(float(foot.time_s[leave[0]]))
-            reaches.append(float(foot.time_s[reach[-1]]))
-    return (min(leaves), max(reaches)) if leaves else None
-
-
-def _rests_within(foot: FootMotion, start_s: float, end_s: float) -> Floats:
-    """Positions (m, 3) of the rests between which the foot walked in the interval."""
-    leave, reach = _swing_rows(foot)
-    middle = 0.5 * (foot.time_s[leave] + foot.time_s[reach])
-    inside = np.flatnonzero((middle >= start_s) & (middle <= end_s))
-    if not len(inside):
-        return np.zeros((0, 3))
-    return foot.rest_position_m[inside[0] : inside[-1] + 2]
-
-
-def _longest(feet: Mapping[Side, FootMotion], start_s: float, end_s: float) -> float:
+def _longest(swings: Sequence[_Swings], start_s: float, end_s: float) -> float:
+    """How far the farther-walking foot gets in an interval, in metres."""
     lengths = [0.0]
-    for foot in feet.values():
-        places = _rests_within(foot, start_s, end_s)
+    for one in swings:
+        places = one.places_within(start_s, end_s)
         if len(places):
-            lengths.append(float(np.linalg.norm((places[-1] - places[0])[:2])))
+            lengths.append(float(np.linalg.norm(places[-1] - places[0])))
     return max(lengths)
 
 
-def _direction(foot: FootMotion, course: Course) -> float:
+def _direction(foot: FootMotion, course: Course, params: HeadingParams) -> float:
     """Direction in radians in which the foot walks the first straight part; of its farthest rest where there is
     none."""
-    places = _rests_within(foot, *course.straights[0]) if course.straights else np.zeros((0, 3))
+    if len(foot.rests) < 2:
+        return 0.0
+    swings = _Swings.of(foot, params)
+    places = swings.places_within(*course.straights[0]) if course.straights else swings.place_m[:0]
     if len(places) < 2:
-        places = foot.rest_position_m
-        if len(places) < 2:
-            return 0.0
-        away = np.linalg.norm((places - places[0])[:, :2], axis=1)
-        places = places[[0, int(np.argmax(away))]]
+        away = np.linalg.norm(swings.place_m - swings.place_m[0], axis=1)
+        places = swings.place_m[[0, int(np.argmax(away))]]
     step = places[-1] - places[0]
     return float(np.arctan2(step[1], step[0]))
