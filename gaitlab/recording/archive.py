@@ -80,9 +80,8 @@ def _check_directory_size(archive: InputFile, limits: Limits) -> None:
         )
     _, _, _, _, count, directory_bytes, _, _ = _END.unpack_from(content, at)
     too_many = count > limits.zip_entries or directory_bytes > limits.zip_entries * _DIRECTORY_ENTRY_BYTES
-    if too_many or content[max(0, at - _LOCATOR_BYTES) :].startswith(
-        _LOCATOR_MARK
-    ):  # ZIP64: for more than we read
+    before = max(0, at - _LOCATOR_BYTES)
+    if too_many or content.startswith(_LOCATOR_MARK, before):  # ZIP64 is for more than is read here
         raise TooLarge(
             "zip_entries",
             f"The zip holds too many files; at most {limits.zip_entries} are read.",
