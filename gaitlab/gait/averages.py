@@ -11,6 +11,8 @@ FEW_STRIDES = 6
 """Fewer gait cycles than this want attention: Motti Ader et al. 2020, Biosensors 10:128, for foot sensors in
 multiple sclerosis."""
 
+TOO_FEW = f"a mean of fewer than {FEW_STRIDES} says little."
+
 
 def mean_of(
     definition: Definition,
@@ -36,9 +38,7 @@ def mean_of(
 def with_count(measurement: Measurement) -> Measurement:
     """Mark a value that rests on few strides."""
     if 0 < measurement.n < FEW_STRIDES:
-        return measurement.with_attention(
-            f"It rests on {measurement.n} only; a mean of fewer than {FEW_STRIDES} says little."
-        )
+        return measurement.with_attention(f"It rests on {measurement.n} only; {TOO_FEW}")
     return measurement
 
 
@@ -57,6 +57,6 @@ def of_both(left: Measurement, right: Measurement) -> Measurement:
     both = measured(definition, MeasuredSide.BOTH, value, sd, left.n + right.n)
     if min(left.n, right.n) < FEW_STRIDES:
         return both.with_attention(
-            f"It rests on {left.n} of the left and {right.n} of the right only; a mean of fewer than {FEW_STRIDES} says little."
+            f"It rests on {left.n} of the left and {right.n} of the right only; {TOO_FEW}"
         )
     return both
