@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import secrets
+import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -16,7 +17,7 @@ from sqlalchemy import Engine, create_engine, make_url, text
 from sqlalchemy.exc import OperationalError
 
 from gaitlab.store import schema
-from gaitlab.store.database import normalised_url
+from gaitlab.store.database import normalised_url, open_engine
 
 N_TRIGGERS = 5
 DEFAULT_POSTGRESQL = "postgresql://postgres@127.0.0.1:5432/test"
@@ -72,10 +73,21 @@ def database_url(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[str
         _drop_everything(engine)
 
 
+@pytest.fixture(scope="session")
+def sqlite_at_head(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A SQLite database at head and without rows, to copy."""
+    folder = tmp_path_factory.mktemp("at-head")
+    engine = open_engine(None, folder)
+    schema.migrate(engine)
+    engine.dispose()
+    return folder / "gaitlab.sqlite3"
+
+
 @pytest.fixture(params=["sqlite", "postgresql"])
 def migrated_url(request: pytest.FixtureRequest, tmp_path: Path) -> str:
-    """Address of a database of each kind at head and without rows (SQLite: made when it is opened)."""
+    """Address of a database of each kind at head and without rows."""
     if request.param == "sqlite":
+        shutil.copy(request.getfixturevalue("sqlite_at_head"), tmp_path / "gaitlab.sqlite3")
         return f"sqlite:///{tmp_path / 'gaitlab.sqlite3'}"
     url: str = request.getfixturevalue("postgresql_url")
     with _engine(url) as engine:

@@ -22,7 +22,7 @@ from gaitlab.clinic.settings import ClinicSettings
 from gaitlab.errors import GaitlabError, Misconfigured
 from gaitlab.store import audit, schema
 from gaitlab.store.base import new_id
-from gaitlab.store.database import Database, one_at_a_time, open_engine, utc_now
+from gaitlab.store.database import Database, one_at_a_time, open_engine, require_durable, utc_now
 from gaitlab.store.files import Files
 from gaitlab.store.people import Site
 
@@ -63,6 +63,7 @@ class Clinic:
         engine = open_engine(settings.database_url, settings.data_dir)
         try:
             schema.migrate(engine)
+            require_durable(engine)
             clinic = cls(settings, Database(engine), files, key)
             clinic._add_default_site()
         except BaseException:

@@ -116,8 +116,9 @@ def end_sessions(db: Session, account_id: str, now: dt.datetime) -> None:
 
 
 def normal_email(email: str) -> str:
-    """An e-mail address as it is compared."""
-    return email.strip().casefold()
+    """An e-mail address as it is compared; nobody's where it has characters that none can have."""
+    plain = email.strip().casefold()
+    return plain if plain.isprintable() else ""
 
 
 def _alive(clinic: Clinic, secret: str) -> Select[WebSession, Account]:
@@ -136,7 +137,7 @@ def _alive(clinic: Clinic, secret: str) -> Select[WebSession, Account]:
 
 
 def _hash(secret: str) -> str:
-    return hashlib.sha256(secret.encode()).hexdigest()
+    return hashlib.sha256(secret.encode(errors="replace")).hexdigest()
 
 
 def _principal(account: Account, session: WebSession) -> Principal:

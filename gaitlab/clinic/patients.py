@@ -103,6 +103,8 @@ def list_patients(desk: Desk, *, query: str = "", limit: int = 50, offset: int =
     """
     scope = desk.reading(Permission.PATIENT_READ, "patient.list")
     require_page(limit, offset)
+    if not query.isprintable():
+        raise InputError("query", "A search must not contain control characters.", column="query")
     rows, total = records.patients(
         scope, query=query.strip(), by_pseudonym=not desk.sees_names, limit=limit, offset=offset
     )

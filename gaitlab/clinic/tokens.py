@@ -88,6 +88,8 @@ def list_tokens(desk: Desk) -> list[TokenView]:
 def revoke_token(desk: Desk, token_id: str) -> None:
     """End a token at once: the caller's own, with USER_MANAGE any of the site."""
     scope = desk.writing(Permission.TOKEN_MANAGE, "token.revoke", token_id)
+    if ID_PATTERN.fullmatch(token_id) is None:
+        raise not_found()
     token = scope.db.scalar(
         select(ApiToken).where(ApiToken.site_id == scope.site_id, ApiToken.id == token_id)
     )
@@ -209,4 +211,4 @@ def _principal(token: ApiToken, owner: Account) -> Principal:
 
 
 def _hash(secret: str) -> str:
-    return hashlib.sha256(secret.encode()).hexdigest()
+    return hashlib.sha256(secret.encode(errors="replace")).hexdigest()

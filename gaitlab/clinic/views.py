@@ -19,14 +19,14 @@ FormT = TypeVar("FormT", bound="Form")
 
 
 def _one_line(text: str) -> str:
-    if any(unicodedata.category(c) in ("Cc", "Cf", "Zl", "Zp") for c in text):
+    if any(unicodedata.category(c) in ("Cc", "Cf", "Cs", "Zl", "Zp") for c in text):
         raise ValueError("must not contain control characters or line breaks")
     return text
 
 
 def _plain_text(text: str) -> str:
     text = text.replace("\r\n", "\n").replace("\r", "\n")
-    if any(unicodedata.category(c) == "Cc" and c not in "\n\t" for c in text):
+    if any(unicodedata.category(c) in ("Cc", "Cs") and c not in "\n\t" for c in text):
         raise ValueError("must not contain control characters")
     return text
 

@@ -75,6 +75,30 @@ def open_engine(url: str | None, data_dir: Path) -> Engine:
         ) from None
 
 
+def require_durable(engine: Engine) -> None:
+    """Refuse a PostgreSQL server that would lose what it has confirmed.
+
+    Raises
+    ------
+    Misconfigured
+        If ``fsync`` or ``synchronous_commit`` is off.
+    """
+    if engine.dialect.name != "postgresql":
+        return
+    with engine.connect() as connection:
+        off = [
+            name
+            for name in ("fsync", "synchronous_commit")
+            if connection.scalar(select(func.current_setting(name))) == "off"
+        ]
+    if off:
+        raise Misconfigured(
+            "database_not_durable",
+            f"The PostgreSQL server has {' and '.join(off)} switched off: it could lose records after confirming them.",
+            f"Switch {' and '.join(off)} on.",
+        )
+
+
 def _keep_sqlite_safe(engine: Engine) -> None:
     journal, synchronous = journal_settings(sqlite3.sqlite_version_info)
 

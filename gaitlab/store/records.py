@@ -14,7 +14,7 @@ from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session as Database
 from sqlalchemy.orm import contains_eager, selectinload
 
-from gaitlab.store.base import Base
+from gaitlab.store.base import ID_PATTERN, Base
 from gaitlab.store.people import Account, Site
 from gaitlab.store.tables import (
     Analysis,
@@ -68,6 +68,8 @@ def _trials(scope: Scope) -> Select[Trial]:
 
 def patient(scope: Scope, patient_id: str, *, lock: bool = False) -> Patient | None:
     """One patient; ``lock`` keeps other writers waiting until the transaction ends."""
+    if ID_PATTERN.fullmatch(patient_id) is None:
+        return None
     query = _patients(scope).where(Patient.id == patient_id)
     return scope.db.scalar(query.with_for_update() if lock else query)
 
@@ -104,6 +106,8 @@ def session_counts(scope: Scope, patient_ids: Sequence[str]) -> dict[str, int]:
 
 def session(scope: Scope, session_id: str, *, lock: bool = False) -> Session | None:
     """One session with its patient."""
+    if ID_PATTERN.fullmatch(session_id) is None:
+        return None
     query = _sessions(scope).where(Session.id == session_id)
     return scope.db.scalar(query.with_for_update(of=Session) if lock else query)
 
@@ -132,6 +136,8 @@ def _whole(query: Select[Trial]) -> Select[Trial]:
 
 def trial(scope: Scope, trial_id: str, *, lock: bool = False) -> Trial | None:
     """One trial with session, patient, files and analyses."""
+    if ID_PATTERN.fullmatch(trial_id) is None:
+        return None
     query = _whole(_trials(scope).where(Trial.id == trial_id)).execution_options(populate_existing=True)
     return scope.db.scalar(query.with_for_update(of=Trial) if lock else query)
 
@@ -171,6 +177,8 @@ def events(scope: Scope, *, patient_id: str | None, limit: int, offset: int) -> 
     """A page of the site's audit events, newest first, and how many there are in all."""
     found = select(AuditEvent).where(AuditEvent.site_id == scope.site_id)
     if patient_id is not None:
+        if ID_PATTERN.fullmatch(patient_id) is None:
+            return [], 0
         found = found.where(AuditEvent.patient_id == patient_id)
     total = scope.db.scalar(select(func.count()).select_from(found.subquery())) or 0
     return list(scope.db.scalars(found.order_by(AuditEvent.seq.desc()).limit(limit).offset(offset))), total

@@ -10,9 +10,9 @@ from gaitlab.clinic import accounts
 from gaitlab.clinic.access import Principal, Role
 from gaitlab.clinic.clinic import Clinic, ClinicSettings
 from tests.clinic.people import Clock, add_person, add_site
-from tests.databases import migrated_url, postgresql_url, raw
+from tests.databases import migrated_url, postgresql_url, raw, sqlite_at_head
 
-__all__ = ["migrated_url", "postgresql_url"]
+__all__ = ["migrated_url", "postgresql_url", "sqlite_at_head"]
 
 
 @pytest.fixture

@@ -107,17 +107,21 @@ def test_a_weak_password_does_not_use_up_the_code(clinic: Clinic) -> None:
     set_up(clinic, code)
 
 
-@pytest.mark.parametrize(
-    ("email", "name", "column"),
-    [("nonsense", "A", "email"), ("a b@c", "A", "email"), ("", "A", "email"), ("a@" + "b" * 260, "A", "email"),
-     ("a@b.example", " ", "name"), ("a@b.example", "A\nB", "name"), ("a@b.example", "x" * 101, "name")],
-)  # fmt: skip
-def test_the_field_that_is_wrong_is_named(clinic: Clinic, email: str, name: str, column: str) -> None:
+def test_the_field_that_is_wrong_is_named(clinic: Clinic) -> None:
     code = accounts.setup_code(clinic)
     assert code is not None
-    with pytest.raises(InputError) as refusal:
-        accounts.create_first_account(clinic, code=code, email=email, name=name, password=PASSWORD)
-    assert refusal.value.column == column
+    for email, name, column in (
+        ("nonsense", "A", "email"),
+        ("a b@c", "A", "email"),
+        ("", "A", "email"),
+        ("a@" + "b" * 260, "A", "email"),
+        ("a@b.example", " ", "name"),
+        ("a@b.example", "A\nB", "name"),
+        ("a@b.example", "x" * 101, "name"),
+    ):
+        with pytest.raises(InputError) as refusal:
+            accounts.create_first_account(clinic, code=code, email=email, name=name, password=PASSWORD)
+        assert refusal.value.column == column
 
 
 def test_only_one_of_two_people_at_once_gets_the_first_account(clinic: Clinic, sql: Sql) -> None:

@@ -187,10 +187,10 @@ def test_lists_are_found_by_part_of_the_code_and_paged(clinic: Clinic, people: P
         assert patients.list_patients(desk).total == 6
 
 
-@pytest.mark.parametrize(("limit", "offset"), [(0, 0), (201, 0), (10, -1), (10, 2**63)])
-def test_impossible_pages_are_refused(clinic: Clinic, people: People, limit: int, offset: int) -> None:
-    with pytest.raises(InputError), clinic.desk(people.alice) as desk:
-        patients.list_patients(desk, limit=limit, offset=offset)
+def test_impossible_pages_are_refused(clinic: Clinic, people: People) -> None:
+    for limit, offset in ((0, 0), (201, 0), (10, -1), (10, 2**63)):
+        with pytest.raises(InputError), clinic.desk(people.alice) as desk:
+            patients.list_patients(desk, limit=limit, offset=offset)
 
 
 def test_a_deleted_patient_is_gone_for_everyone_but_not_erased(
@@ -218,16 +218,14 @@ def test_a_reader_and_an_engineer_change_nothing(clinic: Clinic, people: People)
                 change(desk)
 
 
-@pytest.mark.parametrize(
-    "field", ["id", "site_id", "version", "created_at", "pseudonym", "deleted_at", "n_sessions"]
-)
-def test_nobody_writes_what_is_not_theirs_to_write(clinic: Clinic, people: People, field: str) -> None:
+def test_nobody_writes_what_is_not_theirs_to_write(clinic: Clinic, people: People) -> None:
     added = add(clinic, people.alice)
-    with pytest.raises(InputError) as refusal:
-        read_form(PatientForm, {"code": "x", field: "1"})
-    assert refusal.value.column == field
-    with pytest.raises(InputError), clinic.desk(people.alice) as desk:
-        patients.edit_patient(desk, added.id, {field: "1"})
+    for field in ("id", "site_id", "version", "created_at", "pseudonym", "deleted_at", "n_sessions"):
+        with pytest.raises(InputError) as refusal:
+            read_form(PatientForm, {"code": "x", field: "1"})
+        assert refusal.value.column == field
+        with pytest.raises(InputError), clinic.desk(people.alice) as desk:
+            patients.edit_patient(desk, added.id, {field: "1"})
 
 
 @pytest.mark.parametrize(

@@ -248,11 +248,11 @@ def test_a_key_is_forgotten_after_a_week(
     assert add(clinic, people.alice, patient_id, key="k1").id == second.id
 
 
-@pytest.mark.parametrize("key", ["", "x" * 65, "a b", "ключ", "a\n"])
-def test_an_impossible_key_is_refused(clinic: Clinic, people: People, patient_id: str, key: str) -> None:
-    with pytest.raises(InputError) as refusal:
-        add(clinic, people.alice, patient_id, key=key)
-    assert refusal.value.code == "idempotency_key"
+def test_an_impossible_key_is_refused(clinic: Clinic, people: People, patient_id: str) -> None:
+    for key in ("", "x" * 65, "a b", "ключ", "a\n"):
+        with pytest.raises(InputError) as refusal:
+            add(clinic, people.alice, patient_id, key=key)
+        assert refusal.value.code == "idempotency_key"
 
 
 def test_one_key_sent_many_times_at_once_makes_one_session(

@@ -103,11 +103,11 @@ def test_nobody_gives_a_token_more_than_they_have(clinic: Clinic, people: People
         make(clinic, people.erik, Permission.PATIENT_WRITE)
 
 
-@pytest.mark.parametrize("days", [0, -1, 366, 10_000])
-def test_a_token_must_expire_within_a_year(clinic: Clinic, people: People, days: int) -> None:
-    with pytest.raises(InputError) as refusal:
-        make(clinic, people.alice, days=days)
-    assert refusal.value.column == "days"
+def test_a_token_must_expire_within_a_year(clinic: Clinic, people: People) -> None:
+    for days in (0, -1, 366, 10_000):
+        with pytest.raises(InputError) as refusal:
+            make(clinic, people.alice, days=days)
+        assert refusal.value.column == "days"
 
 
 def test_a_token_needs_name_and_permission(clinic: Clinic, people: People) -> None:
@@ -122,15 +122,25 @@ def test_a_token_needs_name_and_permission(clinic: Clinic, people: People) -> No
             assert refusal.value.column == column
 
 
-@pytest.mark.parametrize(
-    "spoil",
-    [lambda t: "", lambda t: t[:-1], lambda t: t + "x", lambda t: t.replace("gait_", "goat_"), lambda t: t.rsplit("_", 1)[0],
-     lambda t: "gait_" + "a" * 26 + "_" + t.split("_", 2)[2], lambda t: "gait__", lambda t: "é" * 40, lambda t: t.upper()],
-)  # fmt: skip
-def test_anything_but_the_token_itself_is_nobody(
-    clinic: Clinic, people: People, spoil: Callable[[str], str]
-) -> None:
-    assert accounts.principal_of_token(clinic, spoil(make(clinic, people.alice))) is None
+def test_anything_but_the_token_itself_is_nobody(clinic: Clinic, people: People) -> None:
+    token = make(clinic, people.alice)
+    token_id, secret = token.split("_", 2)[1:]
+    for other in (
+        "",
+        token[:-1],
+        token + "x",
+        f"goat_{token_id}_{secret}",
+        f"gait_{token_id}_",
+        f"gait_{token_id}_\ud800",
+        f"gait_{token_id}",
+        f"gait_{'a' * 26}_{secret}",
+        "gait__",
+        "é" * 40,
+        token.upper(),
+        secret,
+    ):
+        assert accounts.principal_of_token(clinic, other) is None
+    assert accounts.principal_of_token(clinic, token) is not None
 
 
 def test_everyone_sees_their_own_tokens_and_an_admin_those_of_the_site(

@@ -8,9 +8,9 @@ from sqlalchemy import Engine
 
 from gaitlab.store import schema
 from gaitlab.store.database import Database, open_engine
-from tests.databases import database_url, migrated_url, postgresql_url
+from tests.databases import database_url, migrated_url, postgresql_url, sqlite_at_head
 
-__all__ = ["database_url", "migrated_url", "postgresql_url"]
+__all__ = ["database_url", "migrated_url", "postgresql_url", "sqlite_at_head"]
 
 
 @pytest.fixture

@@ -82,6 +82,17 @@ def test_other_addresses_are_refused_without_repeating_them(url: str) -> None:
     assert not url or url not in str(refusal.value)
 
 
+def test_a_server_that_may_lose_what_it_confirmed_is_refused(engine: Engine) -> None:
+    if engine.dialect.name == "sqlite":
+        database.require_durable(engine)
+        return
+    database.require_durable(engine)
+    careless = create_engine(engine.url.update_query_dict({"options": "-csynchronous_commit=off"}))
+    with pytest.raises(Misconfigured, match="synchronous_commit"):
+        database.require_durable(careless)
+    careless.dispose()
+
+
 def test_instants_come_back_aware_and_in_utc(db: Database) -> None:
     local = dt.datetime(2026, 7, 1, 12, 0, 0, 123456, tzinfo=dt.timezone(dt.timedelta(hours=2)))
     site_id = add_site(db, "a", local)
