@@ -4,11 +4,7 @@ from __future__ import annotations
 
 from starlette.responses import Response
 
-REPORT_POLICY = (
-    "default-src 'none'; style-src 'unsafe-inline'; img-src data:; font-src data:; base-uri 'none'; "
-    "form-action 'none'; frame-ancestors 'none'; sandbox"
-)
-"""The report is one self-contained page: its own styles and pictures, no script, nothing from anywhere."""
+from gaitlab.report import style_source
 
 FIGURE_POLICY = "default-src 'none'; frame-ancestors 'none'; sandbox"
 """A figure has neither styles nor scripts of its own."""
@@ -45,8 +41,12 @@ class Svg(Response):
 
 
 def report_page(content: str) -> ReportPage:
-    """The report to look at."""
-    return ReportPage(content, headers={"Content-Security-Policy": REPORT_POLICY})
+    """The report to look at: one self-contained page, its own style and pictures, no script, nothing from anywhere."""
+    policy = (
+        f"default-src 'none'; style-src {style_source()}; img-src data:; base-uri 'none'; form-action 'none'; "
+        "frame-ancestors 'none'; sandbox"
+    )
+    return ReportPage(content, headers={"Content-Security-Policy": policy})
 
 
 def figure(content: bytes) -> Svg:

@@ -12,6 +12,9 @@ from gaitlab.errors import InputError
 from gaitlab.recording.intake import InputFile, expand
 from gaitlab.recording.model import Placement
 
+MOST_PROBLEMS = 8
+"""So many wrong files are told at once."""
+
 NOT_USED = "not_used"
 """Chosen instead of a placement: the file stays out of the trial."""
 
@@ -58,6 +61,23 @@ def check_fields(form: FormData, known: Iterable[str]) -> None:
                 column=name,
             )
         seen.add(name)
+
+
+def inspect_all(desk: Desk, files: Sequence[InputFile]) -> tuple[list[InspectedFile], list[InputError]]:
+    """What each file is, and what is wrong with those that cannot be read: one bad file does not hide the others."""
+    errors: list[InputError] = []
+    remaining = list(files)
+    while remaining:
+        try:
+            remaining = expand(remaining)
+            return inspect_upload(desk, remaining), errors
+        except InputError as error:
+            errors.append(error)
+            good = [file for file in remaining if file.name != error.file]
+            if len(good) == len(remaining) or len(errors) == MOST_PROBLEMS:
+                break
+            remaining = good
+    return [], errors
 
 
 def by_placement(form: FormData) -> dict[Placement, InputFile]:

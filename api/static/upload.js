@@ -77,15 +77,14 @@
       if (turn === asked) refuse({ detail: "The server cannot be reached.", hint: "Check the connection, then choose the files again." }, earlier);
       return;
     }
-    show(answer.files, earlier, said(answer.files));
+    const wrong = answer.problems.filter((problem) => problem.file);
+    const unread = wrong.map((problem) => ({ name: problem.file, unread: true }));
+    show([...answer.files, ...unread], earlier, answer.problems.length ? "" : said(answer.files));
+    for (const problem of answer.problems) tell(problem);
   }
 
   function refuse(problem, earlier) {
-    show(
-      chosen.map((file) => ({ name: file.name, unread: true })),
-      earlier,
-      "A file cannot be used. Nothing was stored.",
-    );
+    show(chosen.map((file) => ({ name: file.name, unread: true })), earlier, "");
     tell(problem);
   }
 
@@ -230,13 +229,13 @@
     notice.querySelector("[data-place]").textContent = where.filter(Boolean).join(", ");
     notice.querySelector("[data-detail]").textContent = problem.detail || "Something went wrong.";
     notice.querySelector("[data-hint]").textContent = problem.hint || "";
-    problemSlot.replaceChildren(notice);
+    problemSlot.append(notice);
     const field = !problem.file && problem.column ? form.elements[problem.column] : null;
     if (field && field.setAttribute) {
       field.setAttribute("aria-invalid", "true");
       field.focus();
     }
-    for (const one of rows.children) one.classList.toggle("wrong", Boolean(problem.file) && one.dataset.file === problem.file);
+    for (const one of rows.children) if (problem.file && one.dataset.file === problem.file) one.classList.add("wrong");
     problemSlot.scrollIntoView({ block: "nearest" });
   }
 

@@ -8,7 +8,7 @@ from functools import lru_cache
 from importlib import resources
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import Environment
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
@@ -16,20 +16,13 @@ from api.call import Call, trace_of
 from api.errors import Problem
 from api.web import text
 from gaitlab import __version__
-from gaitlab.paths import data_folder
+from gaitlab.report import template_environment
 
 
 @lru_cache(maxsize=1)
 def environment() -> Environment:
-    """The one environment of all pages. Autoescape does not ask for the file's ending (finding F3)."""
-    made = Environment(
-        loader=FileSystemLoader(data_folder("templates")),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        auto_reload=False,
-    )
+    """The reports' environment (all is escaped, nothing undefined is silent) with what pages need besides."""
+    made = template_environment()
     made.globals.update(static=static_url, version=__version__, today=_today)
     made.filters.update(text.FILTERS)
     return made

@@ -38,6 +38,11 @@ def size(n_bytes: int) -> str:
     return f"{n_bytes / 1e6:.1f} MB" if n_bytes >= 1e6 else f"{n_bytes / 1e3:.0f} kB"
 
 
+def mebibytes(n_bytes: int) -> str:
+    """A limit as it was set: ``256 MiB``."""
+    return f"{n_bytes / 2**20:g} MiB"
+
+
 def data_url(svg: bytes) -> str:
     """A figure as the address of an image: it comes with the page, and nothing in it can run or reach out."""
     return f"data:image/svg+xml;base64,{base64.b64encode(svg).decode()}"
@@ -62,6 +67,7 @@ FILTERS: dict[str, Callable[..., str]] = {
     "day": day,
     "moment": moment,
     "size": size,
+    "mebibytes": mebibytes,
     "data_url": data_url,
     "general": general,
     "percent": percent,

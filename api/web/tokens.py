@@ -25,7 +25,6 @@ SCOPES = {
     Permission.SESSION_READ: "read sessions, results and series",
     Permission.SESSION_WRITE: "upload and analyse walks",
     Permission.REPORT_READ: "read reports",
-    Permission.AUDIT_READ: "read the audit trail",
 }
 
 

@@ -44,8 +44,9 @@ def inspect(patient_id: Id, call: CurrentCall) -> Response:
     """What each file is, for the form's script; stores nothing."""
     with call.desk() as desk:
         patients.get_patient(desk, patient_id)
-        found = sessions.inspect_upload(desk, uploads.files_of(call.form, "files"))
-    return JSONResponse({"files": [asdict(one) for one in found]})
+        found, errors = uploads.inspect_all(desk, uploads.files_of(call.form, "files"))
+    problems = [problem_of(error).model_dump(mode="json") for error in errors]
+    return JSONResponse({"files": [asdict(one) for one in found], "problems": problems})
 
 
 @router.post("/patients/{patient_id}/sessions/new")
