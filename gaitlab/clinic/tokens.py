@@ -44,13 +44,7 @@ def add_token(
     scope = desk.writing(Permission.TOKEN_MANAGE, "token.add")
     scopes = _checked(desk, name, permissions, days)
     owner = _owner(desk, scope, owner_email)
-    missing = scopes - granted(Role(role) for role in owner.roles)
-    if missing:
-        raise NotAllowed(
-            "not_allowed",
-            f"The account itself does not have the permission {min(missing)}.",
-            "Choose fewer permissions for the token.",
-        )
+    _require_own(scopes, owner)
     secret = secrets.token_urlsafe(_SECRET_BYTES)
     now = desk.now()
     token = ApiToken(
@@ -181,6 +175,16 @@ def _owner(desk: Desk, scope: Scope, email: str | None) -> Account:
             column="owner_email",
         )
     return owner
+
+
+def _require_own(scopes: frozenset[Permission], owner: Account) -> None:
+    missing = scopes - granted(Role(role) for role in owner.roles)
+    if missing:
+        raise NotAllowed(
+            "not_allowed",
+            f"The account itself does not have the permission {min(missing)}.",
+            "Choose fewer permissions for the token.",
+        )
 
 
 def _view(token: ApiToken, owner: Account) -> TokenView:
