@@ -35,9 +35,15 @@ _REASON_LABELS = {"ok": "Assumption", "attention": "Attention", "not_determinabl
 _NOTE_ORDER = {"not_determinable": 0, "attention": 1, "ok": 2}
 
 
+def key_names(result: Result) -> tuple[str, ...]:
+    """Names on the first page: of a free walk, without the time over a course that nobody asked for."""
+    free = result.provenance.settings.get("course_m") is None
+    return tuple(name for name in KEY_PARAMETERS if not (free and name == "walk_time"))
+
+
 def key_table(result: Result) -> ParameterTable:
     """The first page's table, reasons as lettered notes below it; other names: the first parameters there are."""
-    names = [name for name in KEY_PARAMETERS if any(p.name == name for p in result.parameters)]
+    names = [name for name in key_names(result) if any(p.name == name for p in result.parameters)]
     names = names or list(dict.fromkeys(p.name for p in result.parameters))[: len(KEY_PARAMETERS)]
     chosen = [p for name in names for p in result.parameters if p.name == name]
     reasons = list(dict.fromkeys((p.status, p.reason) for p in chosen if p.reason))

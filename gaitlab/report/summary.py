@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 from gaitlab.report.document import Verdict
-from gaitlab.report.parameters import KEY_PARAMETERS
+from gaitlab.report.parameters import key_names
 from gaitlab.report.wording import common_decimals, count, listed, number, percent, spoken, with_unit
 from gaitlab.result import Parameter, Result
 
 LOSS_OF_NOTE = 0.05
 """Share of lost samples of one sensor from which the verdict mentions it."""
+
+RESTS_ON_AN_ASSUMPTION = frozenset({"step_length"})
+"""Key values that always rest on how the feet stood, so that they say nothing about this recording."""
+
+FOR_INFORMATION = frozenset(
+    {"lost_samples", "sensor_not_used", "column_not_used", "standing_elsewhere", "rate_overridden"}
+)
+"""Codes of warnings that alone are no reason for attention; a loss of note is one by its share."""
 
 MOST_NAMES = 3
 
@@ -23,7 +31,7 @@ def summary_sentences(result: Result) -> tuple[str, ...]:
 def _time(result: Result) -> str:
     time = result.parameter("walk_time")
     timed = result.walk.timed
-    if time is None:
+    if time is None or "walk_time" not in key_names(result):
         return ""
     if time.value is None:
         return f"The time over the course is not determinable: {_lower(time.reason)}"
@@ -82,8 +90,9 @@ def _sides(result: Result, name: str) -> str | None:
 
 
 def verdict(result: Result) -> Verdict:
-    """Usable, usable with attention, or not usable: by the key values and the lost samples."""
-    key = [p for p in result.parameters if p.name in KEY_PARAMETERS] or list(result.parameters)
+    """Usable, usable with attention, or not usable: by the key values, the lost samples and the warnings."""
+    counted = set(key_names(result)) - RESTS_ON_AN_ASSUMPTION
+    key = [p for p in result.parameters if p.name in counted] or list(result.parameters)
     known = [p for p in key if p.value is not None]
     reserved = [p for p in known if p.status == "attention"]
     missing = [p for p in key if p.value is None]
@@ -95,12 +104,13 @@ def verdict(result: Result) -> Verdict:
         said.append(f"{len(reserved)} with attention{_names(reserved)}")
     if missing and known:
         said.append(f"{len(missing)} missing{_names(missing)}")
-    text = "; ".join(said) + "." + (f" {loss}" if loss else "")
+    words = f"See {count(len(result.warnings), 'warning')}." if result.warnings else ""
+    text = " ".join(part for part in ("; ".join(said) + ".", loss, words) if part)
     if not known:
         return Verdict("not_determinable", "Not usable", text)
-    if reserved or missing or loss or result.warnings:
-        words = f" See {count(len(result.warnings), 'warning')}." if result.warnings else ""
-        return Verdict("attention", "Usable with attention", text + words)
+    serious = any(warning.code not in FOR_INFORMATION for warning in result.warnings)
+    if reserved or missing or loss or serious:
+        return Verdict("attention", "Usable with attention", text)
     return Verdict("ok", "Usable", text)
 
 

@@ -189,8 +189,9 @@ class Panel:
             x = float(self.across(value))
             self.sheet.line([x, x], [self.bottom - 2.5, self.bottom], Stroke("", MUTED, "-"), 0.6, 3)
             if labels:
-                last = value == ticks[-1][0]
-                self.sheet.text(x, self.bottom - 11.5, f"{label} {unit}" if last else label, across="center")
+                text = f"{label} {unit}" if value == ticks[-1][0] else label
+                middle = min(x, self.sheet.width_pt - 0.32 * TEXT_PT * len(text))
+                self.sheet.text(middle, self.bottom - 11.5, text, across="center")
 
     def name(self, text: str) -> None:
         """What the panel shows, above its right end."""
