@@ -71,9 +71,9 @@ def turning_strides(foot: FootMotion, params: HeadingParams | None = None) -> Bo
 def _turning(change: Floats, p: HeadingParams) -> Bools:
     turning: Bools = np.abs(change) >= p.stride_turn_rad
     share = np.abs(change) >= 0.5 * p.curve_turn_rad / p.curve_strides
-    total = (
-        np.convolve(change, np.ones(p.curve_strides), mode="valid") if len(change) >= p.curve_strides else []
-    )
+    if len(change) < p.curve_strides:
+        return turning
+    total = np.convolve(change, np.ones(p.curve_strides), mode="valid")
     for first in np.flatnonzero(np.abs(total) >= p.curve_turn_rad):
         window = slice(first, first + p.curve_strides)
         turning[window] |= share[window]
