@@ -145,13 +145,14 @@ def find_steps(feet: Mapping[Side, FootGait]) -> Steps:
         for k in np.flatnonzero(foot.walking)
     ]
     contacts.sort(key=lambda one: one[0])
+    places = {side: foot.motion.rest_position_m for side, foot in feet.items()}
     rows = []
     for (t_before, other, j), (t, side, k) in itertools.pairwise(contacts):
         if side is other or not (feet[side].straight[k] and feet[other].walking[j]):
             continue
         if not feet[other].straight[j]:
             continue
-        here, there = feet[side].motion.rest_position_m, feet[other].motion.rest_position_m
+        here, there = places[side], places[other]
         line = (here[k + 1] - here[k])[:2]
         line = line / max(float(np.linalg.norm(line)), 1e-9)
         step = (here[k + 1] - there[j + 1])[:2]

@@ -12,7 +12,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitlab.motion.quaternions import heading_rotation, multiply
+from gaitlab.motion.quaternions import multiply, turn_to_left
 from gaitlab.recording.model import Bools, Floats, Placement
 
 Indices = NDArray[np.intp]
@@ -114,7 +114,6 @@ class Motion:
 
     def turned(self, yaw_rad: float) -> Self:
         """The same movement seen from a world turned about the vertical by ``yaw_rad`` (positive to the left)."""
-        matrix = heading_rotation(yaw_rad)
         turn = np.array([np.cos(yaw_rad / 2), 0.0, 0.0, np.sin(yaw_rad / 2)])
         vectors = (
             "rate_radps",
@@ -124,7 +123,7 @@ class Motion:
             "velocity_mps",
             "position_m",
         )
-        changed: dict[str, Any] = {name: getattr(self, name) @ matrix.T for name in vectors}
+        changed: dict[str, Any] = {name: turn_to_left(getattr(self, name), yaw_rad) for name in vectors}
         return replace(self, attitude=multiply(turn, self.attitude), **changed)
 
     def moved(self, shift_m: Floats) -> Self:
@@ -145,7 +144,7 @@ class FootMotion(Motion):
 
     def turned(self, yaw_rad: float) -> Self:
         """As ``Motion.turned``; the residual velocities turn with it."""
-        residual = self.rests.residual_mps @ heading_rotation(yaw_rad).T
+        residual = turn_to_left(self.rests.residual_mps, yaw_rad)
         return replace(super().turned(yaw_rad), rests=replace(self.rests, residual_mps=residual))
 
     @property

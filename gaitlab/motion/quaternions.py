@@ -37,10 +37,13 @@ def rotate(q: Floats, v: Floats) -> Floats:
     return result
 
 
-def heading_rotation(yaw_rad: float) -> Floats:
-    """Matrix, shape (3, 3), that turns about the vertical by ``yaw_rad``, positive to the left seen from above."""
+def turn_to_left(v: Floats, yaw_rad: float) -> Floats:
+    """Turn vectors, shape (n, 3), about the vertical by ``yaw_rad``, positive to the left seen from above."""
     c, s = np.cos(yaw_rad), np.sin(yaw_rad)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    turned = v.copy()
+    turned[:, 0] = c * v[:, 0] - s * v[:, 1]
+    turned[:, 1] = s * v[:, 0] + c * v[:, 1]
+    return turned
 
 
 def twist_about_vertical(q: Floats) -> Floats:

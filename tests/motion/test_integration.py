@@ -48,7 +48,9 @@ def test_position_of_a_uniform_velocity_grows_linearly() -> None:
 @pytest.mark.parametrize("offset", [0.05, -0.3, 1.0])
 def test_a_constant_acceleration_offset_is_removed_whole(offset: float) -> None:
     acceleration, velocity = _swings()
-    corrected, rests = reset_at_rests(velocity_of(acceleration + np.array([offset, -offset, offset]), RATE), RESTS)
+    corrected, rests = reset_at_rests(
+        velocity_of(acceleration + np.array([offset, -offset, offset]), RATE), RESTS
+    )
     np.testing.assert_allclose(corrected, velocity, atol=1e-9)
     length = np.diff(position_of(corrected, RATE)[RESTS.moment], axis=0)[:, 0]
     np.testing.assert_allclose(length, 0.5, atol=1e-4)

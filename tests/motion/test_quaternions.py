@@ -11,10 +11,10 @@ from scipy.spatial.transform import Rotation
 from gaitlab.motion.quaternions import (
     angular_rate,
     conjugate,
-    heading_rotation,
     midway,
     multiply,
     rotate,
+    turn_to_left,
     twist_about_vertical,
 )
 
@@ -37,7 +37,8 @@ def test_product_and_rotation_agree_with_scipy(seed: int) -> None:
 
 
 def test_a_quarter_turn_to_the_left_takes_forward_to_left() -> None:
-    np.testing.assert_allclose(heading_rotation(np.pi / 2) @ [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], atol=1e-15)
+    turned = turn_to_left(np.array([[1.0, 0.0, 2.0]]), np.pi / 2)
+    np.testing.assert_allclose(turned, [[0.0, 1.0, 2.0]], atol=1e-15)
 
 
 @given(SEEDS, st.floats(-3.1, 3.1))
