@@ -20,9 +20,16 @@ GROUPS: dict[str, str] = {
 
 
 def _definition(
-    name: str, label: str, unit: str, group: str, decimals: int, text: str, reference: str = OURS
+    name: str,
+    label: str,
+    unit: str,
+    group: str,
+    decimals: int,
+    text: str,
+    reference: str = OURS,
+    signed: bool = False,
 ) -> Definition:
-    return Definition(name, label, unit, group, text, reference, decimals)
+    return Definition(name, label, unit, group, text, reference, decimals, signed)
 
 
 WALK_TIME = _definition(
@@ -51,6 +58,7 @@ COURSE_CHECK = _definition(
     1,
     "How far the leading foot came forward on the first straight part, less the course, in % of the course: a check of"
     " scale where the person stopped at the end of the course. It is shown, never used.",
+    signed=True,
 )
 STEADY_SPEED = _definition(
     "steady_speed",
@@ -99,6 +107,7 @@ STEP_LENGTH = _definition(
     "Distance along the line of walking from the other foot's place of rest to this foot's; mean of the steady steps."
     " It assumes that the feet stood side by side before the walk and walk in the same direction.",
     GAITRITE,
+    signed=True,
 )
 STEP_WIDTH = _definition(
     "step_width",
@@ -109,6 +118,7 @@ STEP_WIDTH = _definition(
     "Distance across the line of walking between the two feet's places of rest; mean of the steady steps. Sensors on the"
     " feet do not see each other: it assumes how far apart the feet stood before the walk.",
     "İkizoğlu et al. 2018, table 1; Rebula et al. 2013 (not directly observable)",
+    signed=True,
 )
 CADENCE = _definition(
     "cadence",

@@ -29,7 +29,8 @@ class MeasuredSide(StrEnum):
 class Definition:
     """What a parameter means, the same for every patient.
 
-    ``decimals`` bounds how finely people read the value; ``group`` is its place in a table.
+    ``decimals`` bounds how finely people read the value; ``group`` is its place in a table; only ``signed`` values and
+    intervals can lie below zero.
     """
 
     name: str
@@ -39,6 +40,7 @@ class Definition:
     text: str
     reference: str
     decimals: int
+    signed: bool = False
 
 
 @dataclass(frozen=True)
@@ -69,7 +71,8 @@ class Measurement:
     def ci95(self) -> tuple[float, float] | None:
         if self.value is None or self.sd is None:
             return None
-        return self.value - TWO_SIDED_95 * self.sd, self.value + TWO_SIDED_95 * self.sd
+        low, high = self.value - TWO_SIDED_95 * self.sd, self.value + TWO_SIDED_95 * self.sd
+        return (low if self.definition.signed else max(low, min(0.0, self.value))), high
 
     def with_attention(self, reason: str) -> Measurement:
         """The same value, marked: it may be used with the stated reserve."""

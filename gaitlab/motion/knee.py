@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -105,19 +106,21 @@ def heading_against_foot(
 
 
 def standing_spans(foot: FootMotion, n_rows: int, shift: int, params: KneeParams) -> list[tuple[int, int]]:
-    """Rows in which the person stands before the first and after the last cycle: up to a second of each, if there
-    is one."""
+    """Rows ``[start, end]`` of each second in which the person stands before the first and after the last cycle."""
     rate_hz = foot.rate_hz
     margin, second = round(params.standing_margin_s * rate_hz), round(rate_hz)
+    rests = foot.rests
     spans = []
-    for start, end, at_start in (
-        (foot.rests.start[0], foot.rests.end[0] - margin, True),
-        (foot.rests.start[-1] + margin, foot.rests.end[-1], False),
+    for start, end in (
+        (rests.start[0], rests.end[0] - margin),
+        (rests.start[-1] + margin, rests.end[-1]),
     ):
         low, high = max(0, int(start) + shift), min(n_rows - 1, int(end) + shift)
-        if high - low < second // 2:
+        n_seconds = (high - low) // second
+        if n_seconds < 1:
             continue
-        spans.append((max(low, high - second), high) if at_start else (low, min(high, low + second)))
+        borders = np.linspace(low, high, n_seconds + 1).round().astype(int)
+        spans += [(int(x), int(y)) for x, y in itertools.pairwise(borders)]
     return spans
 
 

@@ -66,3 +66,11 @@ def test_every_definition_is_whole_and_has_a_name_of_its_own() -> None:
         assert one.group in GROUPS, one.name
         assert one.text.endswith("."), one.name
         assert one.reference, one.name
+
+
+def test_only_what_can_be_negative_has_an_interval_below_zero() -> None:
+    stop = measured(d.STOP_DURATION, MeasuredSide.BOTH, 0.0, 0.03, 0)
+    assert stop.ci95 == (0.0, pytest.approx(0.0588, abs=1e-3))
+    check = measured(d.COURSE_CHECK, MeasuredSide.BOTH, -1.0, 2.0, 1)
+    assert check.ci95 is not None
+    assert check.ci95[0] == pytest.approx(-4.92, abs=0.01)
