@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gaitlab.gait import definitions as d
+from gaitlab.gait.averages import with_count
 from gaitlab.gait.measurement import MeasuredSide, Measurement, measured, not_determinable
 from gaitlab.gait.strides import FootGait
 from gaitlab.motion.model import KneeMotion
@@ -64,7 +65,7 @@ def knee_parameters(knees: Mapping[Side, KneeGait]) -> list[Measurement]:
         n, m = len(knee.sway_sd_m), len(knee.motion.residual_m)
         if n:
             sway = float(np.sqrt(np.mean(knee.sway_sd_m**2)))
-            measurements.append(measured(d.KNEE_SWAY, which, sway, SWAY_SD_M / np.sqrt(n), n))
+            measurements.append(with_count(measured(d.KNEE_SWAY, which, sway, SWAY_SD_M / np.sqrt(n), n)))
         else:
             measurements.append(
                 not_determinable(d.KNEE_SWAY, which, "No rest lies between two straight strides.")
