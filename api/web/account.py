@@ -34,7 +34,7 @@ def show_setup(call: CurrentCall) -> Response:
 @router.post("/setup")
 @open_to_all(_WHY_SETUP)
 def set_up(call: CurrentCall) -> Response:
-    form = typed(call.form, _SETUP)
+    form = typed(call.form, _SETUP, never_kept=("password",))
     password = str(call.form.get("password", ""))
     try:
         if password != str(call.form.get("password_again", "")):
@@ -51,8 +51,7 @@ def set_up(call: CurrentCall) -> Response:
         )
     except GaitlabError as error:
         problem = problem_of(error)
-        listed = Typed({**form.values, "password": ""}, form.errors)
-        return page(None, "setup.html", problem.status, form=listed.with_problem(problem))
+        return page(None, "setup.html", problem.status, form=form.with_problem(problem))
     return go("/login?new=1")
 
 

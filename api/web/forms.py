@@ -36,9 +36,10 @@ class Typed:
         return Typed(self.values, self.errors, problem)
 
 
-def typed(form: FormData, names: tuple[str, ...]) -> Typed:
-    """The text fields of a form, without blanks around them."""
-    return Typed({name: str(form.get(name, "")).strip() for name in names})
+def typed(form: FormData, names: tuple[str, ...], *, never_kept: tuple[str, ...] = ()) -> Typed:
+    """The text fields of a form, without blanks around them; fields ``never_kept`` are known, but come back empty."""
+    kept = {name: str(form.get(name, "")).strip() for name in names}
+    return Typed({**kept, **dict.fromkeys(never_kept, "")})
 
 
 def decimal(text: str) -> str | None:

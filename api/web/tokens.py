@@ -38,7 +38,7 @@ def show(call: CurrentCall) -> Response:
 @person(Permission.TOKEN_MANAGE)
 def add(call: CurrentCall) -> Response:
     """Answers with the page itself: the text must be shown once and stand in no address."""
-    form = typed(call.form, ("name", "days"))
+    form = typed(call.form, ("name", "days"), never_kept=("scopes",))
     scopes = [str(scope) for scope in call.form.getlist("scopes")]
     try:
         if not form.value("days").isdecimal():
@@ -55,8 +55,7 @@ def add(call: CurrentCall) -> Response:
     except InputError as error:
         column = "scopes" if error.column == "permissions" else error.column
         problem = problem_of(error).model_copy(update={"column": column})
-        listed = Typed({**form.values, "scopes": ""}).with_problem(problem)
-        return _page(call, listed, scopes=scopes, status=problem.status)
+        return _page(call, form.with_problem(problem), scopes=scopes, status=problem.status)
     return _page(call, Typed({"days": "90"}), secret=secret, made=token.name)
 
 

@@ -52,7 +52,7 @@ def inspect(patient_id: Id, call: CurrentCall) -> Response:
 @router.post("/patients/{patient_id}/sessions/new")
 @person(Permission.SESSION_WRITE, upload=True)
 def add_session(patient_id: Id, call: CurrentCall, request: Request) -> Response:
-    form = typed(call.form, (*FIELDS, KEY_FIELD))
+    form = typed(call.form, (*FIELDS, KEY_FIELD), never_kept=("files",))
     data: dict[str, Any] = {name: form.value(name) for name in FIELDS}
     checked, errors = check(SessionForm, {**data, "course_m": decimal(form.value("course_m"))})
     form = Typed(form.values, errors)
@@ -83,7 +83,7 @@ def show_new_trial(session_id: Id, call: CurrentCall) -> Response:
 @router.post("/sessions/{session_id}/trials/new")
 @person(Permission.SESSION_WRITE, upload=True)
 def add_trial(session_id: Id, call: CurrentCall, request: Request) -> Response:
-    form = typed(call.form, (KEY_FIELD,))
+    form = typed(call.form, (KEY_FIELD,), never_kept=("files",))
     try:
         with call.desk() as desk:
             placed = uploads.place(
