@@ -11,6 +11,7 @@ from gaitlab import quality
 from gaitlab.errors import InputError
 from gaitlab.gait import course as walking
 from gaitlab.gait import lengths, timing
+from gaitlab.gait import timed_walk as timed_course
 from gaitlab.gait.knees import knee_gait, knee_parameters
 from gaitlab.gait.model import Gait
 from gaitlab.gait.strides import find_steps, foot_gait
@@ -132,9 +133,9 @@ def _measure(
         for side, motion in knee_motions.items()
     }
     steps = find_steps(feet)
-    timed = walking.time_course(feet, course, settings.course_m)
+    timed = timed_course.time_course(feet, course, settings.course_m)
     parameters = (
-        *walking.timed_walk(feet, timed, course),
+        *timed_course.timed_walk(feet, timed, course),
         *walking.speeds(feet),
         *lengths.traversed_distance(feet),
         *lengths.stride_length(feet),

@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 
 from gaitlab import __version__, result
-from gaitlab.gait.course import START_RULE, TimedCourse
 from gaitlab.gait.knees import KneeGait
 from gaitlab.gait.lengths import distance_of
 from gaitlab.gait.measurement import Measurement
 from gaitlab.gait.model import Gait
 from gaitlab.gait.strides import FootGait
+from gaitlab.gait.timed_walk import START_RULE, TimedCourse
 from gaitlab.recording.model import Recording
 from gaitlab.settings import Settings
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from gaitlab.gait.course import TimedCourse
 from gaitlab.gait.knees import KneeGait
 from gaitlab.gait.measurement import Measurement
 from gaitlab.gait.strides import FootGait
+from gaitlab.gait.timed_walk import TimedCourse
 from gaitlab.motion.heading import Course
 from gaitlab.recording.model import Finding, Side
 

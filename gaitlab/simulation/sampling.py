@@ -5,12 +5,14 @@ device:
 
 ``strapdown`` (MTw and Awinda, which integrate at 1800 Hz) sends the turn over the interval as a rotation
 vector, and the change of velocity in the sensor's frame at the START of the interval, each divided by the
-interval's length. Adding them up again gives the exact movement, however long the interval, and so however
-many packets were lost. On recordings of real MTw sensors the vertical velocity over a stride closes best with
-this convention: −0.02 m/s, against −0.07 with the orientation at the middle and −0.12 with that at the end of
-the interval (341 strides, no packet lost).
+interval's length. Adding them up again gives the exact movement, however long the interval, and so however many packets
+were lost.
 
 ``mean`` sends the mean of specific force and of angular rate in the moving frame of the sensor.
+
+Which of the two a real MTw is, recordings do not settle: with gravity's size taken as it is, the vertical velocity over
+a stride closes better with the orientation at the interval's start (``strapdown``); with its excess taken for an offset,
+and for stride lengths against optical markers, better with that at its middle (``mean``), which the analysis uses.
 """
 
 from __future__ import annotations
