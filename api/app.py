@@ -6,7 +6,6 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
 from fastapi import FastAPI
-from starlette.middleware.trustedhost import TrustedHostMiddleware
 
 from api import errors, guard, rest, web
 from api.middleware import Envelope
@@ -67,9 +66,6 @@ def create_app(clinic: Clinic | None = None, settings: WebSettings | None = None
     errors.install(app, web.error_page)
     for router in (*rest.ROUTERS, *web.ROUTERS):
         app.include_router(router)
-    app.add_middleware(
-        TrustedHostMiddleware, allowed_hosts=list(web_settings.allowed_hosts), www_redirect=False
-    )
     app.add_middleware(Envelope, web=web_settings, page=web.error_page)
     guard.audit(app)
     return app

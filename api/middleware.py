@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import json
 import logging
+import re
 import secrets
 import time
 import traceback
 from types import MappingProxyType
 
-from starlette.datastructures import MutableHeaders
-from starlette.requests import Request
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.requests import ClientDisconnect, Request
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from api.call import Trace, start_trace
-from api.errors import ErrorPage, problem_response
+from api.errors import ErrorPage, RequestRefused, problem_response
 from api.settings import WebSettings
 from gaitlab.errors import Misconfigured
 
@@ -35,6 +36,15 @@ SECURITY_HEADERS = MappingProxyType(
 )
 """Sent with every answer; an answer that carries its own value of one of them keeps it."""
 
+CLIENT_CLOSED_REQUEST = 499
+"""In the log only: the caller went away before the answer."""
+
+_HOST = re.compile(r"(?P<name>\[[0-9a-f:.]{2,45}\]|[a-z0-9.-]{1,253})(?::[0-9]{1,5})?")
+_WRONG_HOST = RequestRefused(
+    "unknown_host",
+    "This server does not answer to the name in the request.",
+    "Use the address it was started with; further names are allowed by GAITLAB_ALLOWED_HOSTS.",
+)
 _log = logging.getLogger("gaitlab.web")
 
 
@@ -63,13 +73,21 @@ class Envelope:
                 self._seal(MutableHeaders(scope=message), trace)
             await send(message)
 
+        async def tell(error: Exception) -> None:
+            await problem_response(Request(scope, receive), error, self._page)(scope, receive, send_sealed)
+
         try:
-            await self._app(scope, receive, send_sealed)
+            if host_of(scope) in self._web.allowed_hosts:
+                await self._app(scope, receive, send_sealed)
+            else:
+                await tell(_WRONG_HOST)
+        except ClientDisconnect:
+            status = CLIENT_CLOSED_REQUEST
         except Exception as error:
             _log_crash(error, trace)
             if status:
                 raise
-            await problem_response(Request(scope, receive), error, self._page)(scope, receive, send_sealed)
+            await tell(error)
         finally:
             _log_request(scope, trace, status, began)
 
@@ -79,6 +97,12 @@ class Envelope:
         headers["X-Request-ID"] = trace.request_id
         if self._web.behind_tls:
             headers["Strict-Transport-Security"] = "max-age=31536000"
+
+
+def host_of(scope: Scope) -> str:
+    """Name in the Host header, without port; empty where it cannot be one."""
+    found = _HOST.fullmatch(Headers(scope=scope).get("host", "").lower())
+    return found["name"] if found else ""
 
 
 def _log_request(scope: Scope, trace: Trace, status: int, began: float) -> None:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import importlib
 import ipaddress
 import logging
 import sys
+import threading
 
 import uvicorn
 
@@ -43,6 +45,7 @@ def serve(
     try:
         check_exposure(host, behind_proxy=behind_proxy, has_account=not accounts.needs_setup(clinic))
         _announce(clinic, host, port)
+        threading.Thread(target=_warm_up, daemon=True).start()
         _log_to_stderr()
         uvicorn.run(
             create_app(clinic, web),
@@ -102,6 +105,12 @@ def _announce(clinic: Clinic, host: str, port: int) -> None:
             f"  code   {code}",
         )
         print("\n".join(lines), file=sys.stderr, flush=True)
+
+
+def _warm_up() -> None:
+    """Load now what the first walk would otherwise wait for: numerics, figures, PDF."""
+    for room in ("gaitlab.analysis", "gaitlab.report.figures.route", "gaitlab.report.pdf"):
+        importlib.import_module(room)
 
 
 def _log_to_stderr() -> None:

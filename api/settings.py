@@ -35,5 +35,7 @@ class WebSettings:
     @classmethod
     def from_environment(cls) -> WebSettings:
         """Read ``GAITLAB_BEHIND_TLS`` (1) and ``GAITLAB_ALLOWED_HOSTS`` (names, commas between)."""
-        named = tuple(h.strip() for h in os.environ.get("GAITLAB_ALLOWED_HOSTS", "").split(",") if h.strip())
+        named = tuple(
+            h.strip().lower() for h in os.environ.get("GAITLAB_ALLOWED_HOSTS", "").split(",") if h.strip()
+        )
         return cls(behind_tls=os.environ.get("GAITLAB_BEHIND_TLS", "") == "1", allowed_hosts=LOOPBACK + named)

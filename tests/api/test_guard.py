@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import MutableMapping
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -157,7 +158,13 @@ def test_a_cookie_opens_no_rest_and_a_token_no_page(house: House) -> None:
 
 @pytest.mark.parametrize("host", ["evil.example", "localhost@evil.example", "localhost/health/live?", ""])
 def test_a_foreign_host_header_is_refused(house: House, host: str) -> None:
-    assert house.browser(house.alice).get("/", headers={"Host": host}).status_code == 400
+    answer = house.browser(house.alice).get("/", headers={"Host": host, "Accept": "application/json"})
+    assert (answer.status_code, answer.json()["code"]) == (400, "unknown_host")
+
+
+@pytest.mark.parametrize("host", ["localhost", "LOCALHOST:8000", "127.0.0.1:8000", "[::1]:8000"])
+def test_this_machine_s_own_names_are_answered(house: House, host: str) -> None:
+    assert house.browser(house.alice).get("/", headers={"Host": host}).status_code == 200
 
 
 @pytest.mark.parametrize(
@@ -191,14 +198,17 @@ class Wire:
             "server": ("localhost", 80),
         }
         self.n_read = 0
+        self.gone_after = 1000
         self.status = 0
 
-    async def _receive(self) -> dict[str, Any]:
+    async def _receive(self) -> MutableMapping[str, Any]:
         self.n_read += 1
         assert self.n_read < 100, "the body is read without end"
+        if self.n_read > self.gone_after:
+            return {"type": "http.disconnect"}
         return {"type": "http.request", "body": b"x" * 65536, "more_body": True}
 
-    async def _send(self, message: dict[str, Any]) -> None:
+    async def _send(self, message: MutableMapping[str, Any]) -> None:
         self.status = message.get("status", self.status)
 
     def send(self) -> Wire:
@@ -223,6 +233,23 @@ def test_a_body_declared_over_the_limit_is_refused_unread(house: House) -> None:
     length = (b"content-length", b"4000000000")
     wire = Wire(house, "/api/v1/patients", bearer, length, (b"content-type", b"application/json")).send()
     assert (wire.status, wire.n_read) == (413, 0)
+
+
+def test_a_caller_who_goes_away_is_no_crash(house: House, caplog: pytest.LogCaptureFixture) -> None:
+    caplog.set_level("INFO", "gaitlab.web")
+    browser = house.browser(house.alice)
+    form = (b"content-type", b"application/x-www-form-urlencoded")
+    wire = Wire(
+        house,
+        "/patients/new",
+        form,
+        (b"cookie", b"gait=" + browser.secret.encode()),
+        (b"sec-fetch-site", b"same-origin"),
+    )
+    wire.gone_after = 2
+    assert wire.send().status == 0
+    assert '"status": 499' in caplog.text
+    assert "crash" not in caplog.text
 
 
 def test_a_body_over_the_limit_gets_a_problem_document(house: House) -> None:

@@ -187,7 +187,7 @@ def test_a_key_that_cannot_be_one_is_refused(house: House, key: str) -> None:
         f"/api/v1/patients/{patient.id}/sessions",
         data=DATA,
         files=as_uploads(short_walk()),
-        headers={b"Idempotency-Key": key.encode("latin-1")},  # type: ignore[dict-item]
+        headers={b"Idempotency-Key": key.encode("latin-1")},
     )
     assert answer.status_code == 422
     assert house.n_sessions(patient.id) == 0

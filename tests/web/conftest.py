@@ -6,6 +6,9 @@ from pathlib import Path
 import pytest
 
 from tests.api.visitors import House, open_house
+from tests.databases import migrated_url, postgresql_url, sqlite_at_head
+
+__all__ = ["migrated_url", "postgresql_url", "sqlite_at_head"]
 
 
 @pytest.fixture
