@@ -50,7 +50,12 @@ def main() -> None:
         for file in files.values():
             lines = file.content.split(b"\n", 40)
             header = next(i for i, line in enumerate(lines) if b"PacketCounter" in line)
-            pd.read_csv(io.BytesIO(file.content), sep="," if b"," in lines[header] else "\t", skiprows=header, engine="c")
+            pd.read_csv(
+                io.BytesIO(file.content),
+                sep="," if b"," in lines[header] else "\t",
+                skiprows=header,
+                engine="c",
+            )
 
     stages: dict[str, Callable[[], object]] = {
         "pandas parses the text": pandas_only,

@@ -10,7 +10,11 @@ ROOT = Path(__file__).resolve().parents[1]
 
 
 def test_rooms_import_only_from_rooms_below_them() -> None:
-    command = [sys.executable, "-c", "from importlinter.cli import lint_imports_command; lint_imports_command()"]
+    command = [
+        sys.executable,
+        "-c",
+        "from importlinter.cli import lint_imports_command; lint_imports_command()",
+    ]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
 
@@ -32,14 +36,22 @@ def test_help_loads_no_numerics() -> None:
         "try:\n    main(['--help'])\nexcept SystemExit:\n    pass\n"
         "sys.exit(any(name in sys.modules for name in ('numpy', 'scipy', 'fastapi', 'sqlalchemy')))"
     )
-    assert subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, check=False).returncode == 0
+    assert (
+        subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, check=False).returncode
+        == 0
+    )
 
 
 def test_nothing_in_the_project_names_a_machine_or_a_registry() -> None:
-    listed = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=False).stdout.split()
+    listed = subprocess.run(
+        ["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=False
+    ).stdout.split()
     words = ("/wor" + "k/", "/roo" + "t/", "index-" + "url", "/simp" + "le/")
     for name in listed:
         path = ROOT / name
-        if path.suffix in (".py", ".toml", ".txt", ".md", ".html", ".css", ".js", ".typ", "") and path.is_file():
+        if (
+            path.suffix in (".py", ".toml", ".txt", ".md", ".html", ".css", ".js", ".typ", "")
+            and path.is_file()
+        ):
             text = path.read_text(encoding="utf-8", errors="ignore")
             assert not [word for word in words if word in text], name
