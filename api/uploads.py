@@ -9,7 +9,8 @@ from starlette.datastructures import FormData, UploadFile
 from gaitlab.clinic.clinic import Desk
 from gaitlab.clinic.sessions import InspectedFile, inspect_upload
 from gaitlab.errors import InputError
-from gaitlab.recording.intake import InputFile, expand
+from gaitlab.recording.file import InputFile
+from gaitlab.recording.intake import expand
 from gaitlab.recording.model import Placement
 
 MOST_PROBLEMS = 8

@@ -18,7 +18,7 @@ from gaitlab.clinic.access import Permission
 from gaitlab.clinic.clinic import Desk
 from gaitlab.clinic.views import SessionForm, Test, read_form
 from gaitlab.errors import InputError
-from gaitlab.recording.intake import InputFile
+from gaitlab.recording.file import InputFile
 from gaitlab.recording.model import Placement
 
 router = APIRouter(prefix="/api/v1", tags=["sessions"], route_class=GuardedRoute)

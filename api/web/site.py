@@ -10,7 +10,7 @@ from api.guard import GuardedRoute
 from api.policy import open_to_all, person
 from api.web.templates import page, static_file
 from gaitlab.errors import NotFound
-from gaitlab.recording.intake import LIMITS
+from gaitlab.recording.file import LIMITS
 
 router = APIRouter(include_in_schema=False, route_class=GuardedRoute)
 

@@ -15,7 +15,8 @@ from gaitlab.clinic.clinic import Clinic
 from gaitlab.clinic.desk import Desk
 from gaitlab.clinic.settings import ClinicSettings
 from gaitlab.clinic.views import PatientForm, SessionForm, SessionView
-from gaitlab.recording.intake import InputFile, load
+from gaitlab.recording.file import InputFile
+from gaitlab.recording.intake import load
 from gaitlab.recording.model import Placement
 from gaitlab.recording.selection import place_files
 from gaitlab.simulation.mtmanager import write_mtmanager

@@ -12,7 +12,7 @@ from dataclasses import asdict, dataclass
 from gaitlab.analysis import Settings
 from gaitlab.clinic.desk import Desk
 from gaitlab.errors import InputError
-from gaitlab.recording.intake import InputFile
+from gaitlab.recording.file import InputFile
 from gaitlab.recording.model import Placement
 from gaitlab.store import records
 from gaitlab.store.records import Scope

@@ -13,7 +13,7 @@ from gaitlab.clinic.desk import not_found
 from gaitlab.clinic.showing import session_summary, session_view, trial_view
 from gaitlab.clinic.uploads import InspectedFile, inspect_upload
 from gaitlab.clinic.views import SessionForm, SessionSummary, SessionView, TrialView
-from gaitlab.recording.intake import InputFile
+from gaitlab.recording.file import InputFile
 from gaitlab.recording.model import Placement
 from gaitlab.store import records, tables
 from gaitlab.store.base import new_id

@@ -13,7 +13,7 @@ from gaitlab.analysis import Analysis, Settings, analyze
 from gaitlab.clinic.desk import Desk
 from gaitlab.errors import TooLarge
 from gaitlab.recording import read_files
-from gaitlab.recording.intake import InputFile
+from gaitlab.recording.file import InputFile
 from gaitlab.recording.model import Placement
 from gaitlab.series import to_bytes
 from gaitlab.store import records, tables

@@ -9,8 +9,9 @@ from gaitlab.clinic.access import Permission
 from gaitlab.clinic.clinic import Desk
 from gaitlab.errors import InputError
 from gaitlab.recording.families import read_samples
+from gaitlab.recording.file import InputFile
 from gaitlab.recording.foreign import is_sensor_text
-from gaitlab.recording.intake import PLACEMENT_FILE, InputFile, expand
+from gaitlab.recording.intake import PLACEMENT_FILE, expand
 from gaitlab.recording.model import Placement
 from gaitlab.recording.packets import regular_grid
 from gaitlab.recording.placing import Guess, device_of, guess_one

@@ -18,7 +18,7 @@ from itertools import pairwise
 from pathlib import PurePosixPath
 
 from gaitlab.errors import InputError, TooLarge
-from gaitlab.recording.intake import MIB, InputFile, Limits, check_size, clean_name
+from gaitlab.recording.file import MIB, InputFile, Limits, check_size, clean_name
 
 _END = struct.Struct("<4s4H2LH")
 _END_MARK, _LOCATOR_MARK = b"PK\x05\x06", b"PK\x06\x07"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import codecs
 
 from gaitlab.errors import InputError
-from gaitlab.recording.intake import InputFile
+from gaitlab.recording.file import InputFile
 
 _HEAD = 4096
 _CONTROL = bytes(set(range(32)) - set(b"\t\n\r\f"))

@@ -7,7 +7,7 @@ from typing import Any
 
 from gaitlab.errors import InputError
 from gaitlab.recording.families import read_samples
-from gaitlab.recording.intake import InputFile
+from gaitlab.recording.file import InputFile
 from gaitlab.recording.model import Finding, Placement
 from gaitlab.recording.packets import Gap, find_gaps
 from gaitlab.recording.placing import device_of

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from gaitlab.recording import mtmanager
-from gaitlab.recording.intake import InputFile
+from gaitlab.recording.file import InputFile
 from gaitlab.recording.samples import Samples
 
 

@@ -6,8 +6,8 @@ import re
 
 from gaitlab.errors import InputError
 from gaitlab.recording.decoding import head_text
+from gaitlab.recording.file import LIMITS, InputFile
 from gaitlab.recording.heading import Header, has_header
-from gaitlab.recording.intake import LIMITS, InputFile
 
 _HINT = (
     "Export the recording from MT Manager as text (ASCII), with packet counter, accelerometer and gyroscope."

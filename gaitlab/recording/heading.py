@@ -8,7 +8,7 @@ from functools import cached_property
 
 from gaitlab.errors import InputError, TooLarge
 from gaitlab.recording.decoding import line_text
-from gaitlab.recording.intake import LIMITS, Limits
+from gaitlab.recording.file import LIMITS, Limits
 
 _COUNTER = re.compile(rb"packet[ _]?counter", re.IGNORECASE)
 _DELIMITERS = (";", "\t", "|", ",", " ", ":")

@@ -17,9 +17,9 @@ from gaitlab.recording import heading as h
 from gaitlab.recording import units
 from gaitlab.recording.columns import Columns
 from gaitlab.recording.decoding import plain_text
+from gaitlab.recording.file import LIMITS, InputFile, Limits
 from gaitlab.recording.foreign import not_mt_manager, refuse_foreign
 from gaitlab.recording.heading import Header, find_header
-from gaitlab.recording.intake import LIMITS, InputFile, Limits
 from gaitlab.recording.model import Bools, Finding, Floats
 from gaitlab.recording.packets import unwrap
 from gaitlab.recording.rates import rate_from_stamps

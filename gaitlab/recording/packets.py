@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from gaitlab.errors import InputError, TooLarge
 from gaitlab.recording.attitude import slerp
-from gaitlab.recording.intake import LIMITS, Limits
+from gaitlab.recording.file import LIMITS, Limits
 from gaitlab.recording.model import Bools, Floats
 from gaitlab.recording.samples import Packets
 

@@ -9,8 +9,8 @@ from itertools import pairwise
 
 from gaitlab.errors import InputError
 from gaitlab.recording.decoding import head_text
+from gaitlab.recording.file import LIMITS, InputFile
 from gaitlab.recording.heading import device_in_comments
-from gaitlab.recording.intake import LIMITS, InputFile
 from gaitlab.recording.model import Placement, Side
 from gaitlab.recording.mtmanager import device_in_name
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from gaitlab.errors import InputError
 from gaitlab.recording.alignment import align
 from gaitlab.recording.families import read_samples
-from gaitlab.recording.intake import InputFile
+from gaitlab.recording.file import InputFile
 from gaitlab.recording.model import Finding, Placement, Recording, Sensor, Source
 from gaitlab.recording.packets import regular_grid
 from gaitlab.recording.quality import clock_findings

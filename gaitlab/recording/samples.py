@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitlab.recording.intake import InputFile
+from gaitlab.recording.file import InputFile
 from gaitlab.recording.model import Bools, Finding, Floats
 
 Packets = NDArray[np.int64]

@@ -9,8 +9,9 @@ from pathlib import Path
 
 from gaitlab.errors import InputError
 from gaitlab.recording.families import read_samples
+from gaitlab.recording.file import InputFile, clean_name
 from gaitlab.recording.foreign import is_sensor_text
-from gaitlab.recording.intake import PLACEMENT_FILE, InputFile, clean_name, expand, load
+from gaitlab.recording.intake import PLACEMENT_FILE, expand, load
 from gaitlab.recording.model import Finding, Placement
 from gaitlab.recording.placing import Guess, guess_one, placed_twice
 

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from gaitlab.errors import InputError, TooLarge
 from gaitlab.recording.decoding import line_text
+from gaitlab.recording.file import LIMITS, Limits, clean_name
 from gaitlab.recording.heading import Header
-from gaitlab.recording.intake import LIMITS, Limits, clean_name
 from gaitlab.recording.model import Floats
 
 _CHUNK = 8 * 1024 * 1024

@@ -10,7 +10,7 @@ import pytest
 from gaitlab.errors import InputError, TooLarge
 from gaitlab.recording import InputFile, Placement, read_files
 from gaitlab.recording import mtmanager as reader
-from gaitlab.recording.intake import Limits
+from gaitlab.recording.file import Limits
 from tests.recording.texts import ACC, EULER, GYR, MAG, MATRIX, QUATERNION, Text, mt_text
 
 TEXT = mt_text()

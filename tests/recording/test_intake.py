@@ -14,7 +14,8 @@ import pytest
 
 from gaitlab.errors import InputError, TooLarge
 from gaitlab.recording import archive
-from gaitlab.recording.intake import InputFile, Limits, expand, load
+from gaitlab.recording.file import InputFile, Limits
+from gaitlab.recording.intake import expand, load
 
 TEXT = b"PacketCounter\tAcc_X\n1\t2.0\n" * 50
 
