@@ -15,8 +15,9 @@ from gaitlab.gait import timed_walk as timed_course
 from gaitlab.gait.knees import knee_gait, knee_parameters
 from gaitlab.gait.model import Gait
 from gaitlab.gait.strides import find_steps, foot_gait
+from gaitlab.motion.course import Course, find_course
 from gaitlab.motion.foot import track_foot
-from gaitlab.motion.heading import Course, find_course, to_common_frame
+from gaitlab.motion.frame import Frame, to_common_frame
 from gaitlab.motion.knee import track_knee
 from gaitlab.motion.model import FootMotion, KneeMotion
 from gaitlab.motion.offset import STANDARD_GRAVITY_MPS2
@@ -50,9 +51,9 @@ def analyze(recording: Recording, settings: Settings | None = None) -> Analysis:
     """
     settings = settings or Settings()
     _check(recording, settings)
-    feet, knees, course = _reconstruct(recording, settings)
-    quality.check_placements(feet, knees)
-    gait = _measure(recording, settings, feet, knees, course)
+    frame, knees, course = _reconstruct(recording, settings)
+    quality.check_placements(frame.feet, knees)
+    gait = _measure(recording, settings, frame, knees, course)
     result = result_of(recording, settings, gait)
     return Analysis(recording, gait, result, _series(gait))
 
@@ -75,9 +76,7 @@ def _check(recording: Recording, settings: Settings) -> None:
     quality.check_length(recording)
 
 
-def _reconstruct(
-    recording: Recording, settings: Settings
-) -> tuple[dict[Side, FootMotion], dict[Side, KneeMotion], Course]:
+def _reconstruct(recording: Recording, settings: Settings) -> tuple[Frame, dict[Side, KneeMotion], Course]:
     """Foot paths, knee paths and the course, in one world frame."""
     motions = {
         placement.side: track_foot(sensor, recording.time_s(placement), settings.method, settings.orientation)
@@ -85,7 +84,7 @@ def _reconstruct(
         if placement.is_foot
     }
     course = find_course(motions)
-    feet, moves = to_common_frame(motions, course)
+    frame = to_common_frame(motions, course)
     knees = {}
     for placement, sensor in recording.sensors.items():
         side = placement.side
@@ -94,10 +93,9 @@ def _reconstruct(
         shift = _knee_shift(recording, side)
         time_s = recording.time_s(placement)
         knee = track_knee(sensor, time_s, motions[side], shift, settings.method, settings.orientation)
-        yaw, _ = moves[side]
-        turned = knee.turned(yaw)
-        knees[side] = turned.moved(_above_foot(turned, feet[side], shift))
-    return feet, knees, course
+        turned = knee.turned(frame.yaw_rad[side])
+        knees[side] = turned.moved(_above_foot(turned, frame.feet[side], shift))
+    return frame, knees, course
 
 
 def _knee_shift(recording: Recording, side: Side) -> int:
@@ -118,7 +116,7 @@ def _above_foot(knee: KneeMotion, foot: FootMotion, shift: int) -> np.ndarray:
 def _measure(
     recording: Recording,
     settings: Settings,
-    motions: Mapping[Side, FootMotion],
+    frame: Frame,
     knee_motions: Mapping[Side, KneeMotion],
     course: Course,
 ) -> Gait:
@@ -126,7 +124,7 @@ def _measure(
         side: foot_gait(
             motion, course, abs(motion.offsets.gravity_mps2 / STANDARD_GRAVITY_MPS2 - 1.0) / np.sqrt(3.0)
         )
-        for side, motion in motions.items()
+        for side, motion in frame.feet.items()
     }
     knees = {
         side: knee_gait(motion, feet[side], _knee_shift(recording, side))
@@ -135,20 +133,20 @@ def _measure(
     steps = find_steps(feet)
     timed = timed_course.time_course(feet, course, settings.course_m)
     parameters = (
-        *timed_course.timed_walk(feet, timed, course),
+        *timed_course.timed_walk(timed),
         *walking.speeds(feet),
         *lengths.traversed_distance(feet),
         *lengths.stride_length(feet),
-        *lengths.step_length(feet, steps),
-        *lengths.step_width(feet, steps),
+        *lengths.step_length(feet, steps, frame.stood_together),
+        *lengths.step_width(feet, steps, frame.stood_together),
         *timing.times_and_phases(feet, steps),
-        timing.stop_duration(feet),
+        timing.stop_duration(feet, course),
         *walking.turns(course),
-        walking.path_deviation(feet, course),
+        walking.path_deviation(feet, course, frame.stood_together),
         *walking.start_to_end(feet),
         *knee_parameters(knees),
     )
-    findings = (*recording.findings, *quality.findings(recording, feet, knees))
+    findings = quality.merged(recording.findings, quality.findings(recording, settings.method, feet, knees))
     return Gait(feet, knees, course, timed, quality.with_reserve(parameters, findings), findings)
 
 

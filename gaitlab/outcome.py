@@ -117,7 +117,8 @@ def _walk(gait: Gait) -> result.Walk:
     closing = {}
     for side, foot in gait.feet.items():
         places = foot.motion.rest_position_m
-        closing[side.value] = _r(np.linalg.norm((places[-1] - places[0])[:2])) if len(places) else 0.0
+        if len(places) > 1:
+            closing[side.value] = _r(np.linalg.norm((places[-1] - places[0])[:2]))
     timed = gait.timed
     return result.Walk(
         straights=tuple(result.Interval(start_s=_r(a), end_s=_r(b)) for a, b in gait.course.straights),

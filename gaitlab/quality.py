@@ -14,7 +14,7 @@ from gaitlab.gait.measurement import Measurement
 from gaitlab.gait.strides import FootGait
 from gaitlab.motion.model import FootMotion, KneeMotion, Motion
 from gaitlab.motion.offset import STANDARD_GRAVITY_MPS2
-from gaitlab.motion.rest import restlessness
+from gaitlab.motion.rest import find_rests, restlessness
 from gaitlab.recording.model import Finding, Placement, Recording, Side
 
 
@@ -35,6 +35,10 @@ class QualityParams:
         Share of lost samples from which lengths want attention.
     gravity_share : float
         Gravity read wrong by more than this share.
+    partly_s : float
+        A foot that starts or ends more than this apart from the other is recorded in part.
+    rest_share : float
+        Fewer rests than this share of the gait cycles are too few.
     residual_mps : float
         Median residual velocity at the rests above which the path wants attention.
     """
@@ -45,6 +49,8 @@ class QualityParams:
     restless_foot: float = 0.13
     lost_share: float = 0.10
     gravity_share: float = 0.06
+    partly_s: float = 1.0
+    rest_share: float = 0.8
     residual_mps: float = 0.5
 
 
@@ -58,21 +64,23 @@ _LENGTHS = (
     "traversed_distance",
 )
 _TIMES = ("stride_time", "step_time", "cadence", "stance_share", "swing_share", "double_support_share")
-_PATHS = (
-    *_LENGTHS,
-    "walk_time",
-    "walk_speed",
-    "course_check",
-    "path_deviation",
-    "closing_distance",
-    "knee_sway",
-)
+_TESTS = ("walk_time", "walk_speed", "course_check")
+_PATHS = (*_LENGTHS, *_TESTS, "path_deviation", "closing_distance", "knee_sway")
+_ALL = (*_PATHS, *_TIMES, "stop_duration", "turn_duration", "turn_angle", "knee_residual")
 RESERVES: dict[str, tuple[tuple[str, ...], str]] = {
     "no_standing": (_PATHS, "Nobody stood still, so the sensors' offsets are less certain."),
     "few_straight": ((*_LENGTHS[:4], *_TIMES), "First and last strides are in it."),
-    "many_lost": (_PATHS, "Many samples were lost."),
+    "few_rests": (_ALL, "The method found too few rests."),
+    "many_lost": ((*_PATHS, *_TIMES), "Many samples were lost."),
+    "long_gap": ((*_PATHS, *_TIMES), "A long part of the recording was lost."),
+    "partly_recorded": (
+        ("traversed_distance", "closing_distance", *_TESTS),
+        "A foot was not recorded throughout.",
+    ),
     "restless_foot": ((*_PATHS, *_TIMES), "The foot hardly comes to rest."),
     "large_residual": (_PATHS, "The path drifted much between rests."),
+    "rate_assumed": (_ALL, "The sampling rate is assumed."),
+    "rate_contradiction": (_ALL, "The sampling rate is in doubt."),
 }
 """Finding → names of the parameters that want attention for it, and the reason."""
 
@@ -110,10 +118,33 @@ def _restlessness(motion: Motion) -> float | None:
     return restlessness(motion.acceleration_mps2, motion.rate_radps, motion.rate_hz)
 
 
+def merged(read: Sequence[Finding], analysed: Sequence[Finding]) -> tuple[Finding, ...]:
+    """What the reader found and what the analysis found, without the reader's weaker word on the same matter."""
+    stronger = {"lost_samples": "many_lost", "saturated": "saturated"}
+    said = {(one.code, one.placement) for one in analysed}
+    kept = [one for one in read if (stronger.get(one.code, ""), one.placement) not in said]
+    return (*kept, *analysed)
+
+
 def findings(
-    recording: Recording, feet: Mapping[Side, FootGait], knees: Mapping[Side, KneeGait]
+    recording: Recording, method: str, feet: Mapping[Side, FootGait], knees: Mapping[Side, KneeGait]
 ) -> list[Finding]:
     """What to know about the data, in words; placements in their usual order."""
+    found = _of_recording(recording, feet)
+    for side, foot in feet.items():
+        found += _of_foot(Placement.foot(side), foot)
+        if method != "gaitlab":
+            found += _of_rests(Placement.foot(side), foot)
+    for side, knee in knees.items():
+        found += _of_sensor(Placement.knee(side), knee.motion)
+        if not len(knee.motion.residual_m) and feet[side].walking.any():
+            message = f"The {side} knee was not recorded while its foot walked: it cannot be corrected."
+            found.append(Finding("knee_without_cycle", message, Placement.knee(side)))
+    return found
+
+
+def _of_recording(recording: Recording, feet: Mapping[Side, FootGait]) -> list[Finding]:
+    """What is missing, and who is recorded for a part only."""
     found: list[Finding] = []
     for side in Side:
         if side not in feet:
@@ -124,17 +155,26 @@ def findings(
                     Placement.foot(side),
                 )
             )
+    begin = min(float(foot.motion.time_s[0]) for foot in feet.values())
+    end = max(float(foot.motion.time_s[-1]) for foot in feet.values())
+    walks = any(foot.walking.any() for foot in feet.values())
     for side, foot in feet.items():
-        found += _of_foot(Placement.foot(side), foot)
-    for side, knee in knees.items():
-        found += _of_sensor(Placement.knee(side), knee.motion)
+        late, early = float(foot.motion.time_s[0]) - begin, end - float(foot.motion.time_s[-1])
+        if max(late, early) > PARAMS.partly_s:
+            message = f"The {side} foot starts {late:.1f} s after the other and ends {early:.1f} s before it."
+            found.append(Finding("partly_recorded", message, Placement.foot(side)))
+        if walks and not foot.walking.any():
+            message = (
+                f"The {side} foot makes no stride while the other walks: its sensor may have lain still."
+            )
+            found.append(Finding("foot_without_stride", message, Placement.foot(side)))
     for placement in recording.sensors:
         if not placement.is_foot and placement.side not in feet:
             message = (
                 f"The {placement.label} was left out: without its foot there is nothing to correct it by."
             )
             found.append(Finding("knee_without_foot", message, placement))
-    if not any(foot.walking.any() for foot in feet.values()):
+    if not walks:
         found.append(Finding("no_walking", "Nobody walks in this recording: no stride was found.", None))
     return found
 
@@ -148,7 +188,7 @@ def _of_sensor(placement: Placement, motion: Motion) -> list[Finding]:
             " filter and the accelerometer's comes from the quietest second."
         )
         found.append(Finding("no_standing", message, placement))
-    elif offsets.start != round(2.0 * motion.rate_hz):
+    elif not offsets.as_in_paper:
         at = motion.time_s[offsets.start]
         message = f"The {placement.label} does not stand from 2 s to 3 s; its offsets come from the second at {at:.1f} s."
         found.append(Finding("standing_elsewhere", message, placement))
@@ -166,6 +206,20 @@ def _of_sensor(placement: Placement, motion: Motion) -> list[Finding]:
         )
         found.append(Finding("many_lost", message, placement))
     return found
+
+
+def _of_rests(placement: Placement, foot: FootGait) -> list[Finding]:
+    """A method of rest detection that misses gait cycles."""
+    motion = foot.motion
+    expected = len(find_rests(motion.acceleration_mps2, motion.rate_radps, motion.rate_hz))
+    distinct = int(foot.walking.sum()) + 1
+    if distinct >= PARAMS.rest_share * expected:
+        return []
+    message = (
+        f"The {placement.label} walks from rest to rest {distinct - 1} times by this method and"
+        f" makes {max(expected - 1, 0)} strides: lengths and times are partly those of several strides."
+    )
+    return [Finding("few_rests", message, placement)]
 
 
 def _of_foot(placement: Placement, foot: FootGait) -> list[Finding]:
@@ -202,8 +256,20 @@ def with_reserve(parameters: Sequence[Measurement], found: Sequence[Finding]) ->
     for parameter in parameters:
         for finding in found:
             names, reason = RESERVES.get(finding.code, ((), ""))
-            concerned = finding.placement is None or parameter.side in ("both", finding.placement.side)
-            if parameter.definition.name in names and concerned and reason not in parameter.reason:
+            if (
+                parameter.definition.name in names
+                and _concerns(finding, parameter)
+                and reason not in parameter.reason
+            ):
                 parameter = parameter.with_attention(reason)
         marked.append(parameter)
     return tuple(marked)
+
+
+def _concerns(finding: Finding, parameter: Measurement) -> bool:
+    """What is found of a knee concerns the knee alone; what is found of a foot, its side and both."""
+    placement = finding.placement
+    if placement is None:
+        return True
+    of_knee = parameter.definition.group == "knee"
+    return parameter.side in ("both", placement.side) and (placement.is_foot or of_knee)

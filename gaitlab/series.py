@@ -40,8 +40,8 @@ class SensorSeries:
 
     def to_frame(self) -> pd.DataFrame:
         """The fixed columns of ``--series``."""
-        columns = {
-            "t_s": self.t_s.round(6),
+        columns: dict[str, object] = {
+            "t_s": self.t_s,
             "lost": self.lost.astype(np.int8),
             "rest": self.rest.astype(np.int8),
         }
@@ -51,7 +51,7 @@ class SensorSeries:
             ("p", "m", self.position_m),
         ):
             for axis, name in enumerate("xyz"):
-                columns[f"{stem}{name}_{unit}"] = values[:, axis]
+                columns[f"{stem}{name}_{unit}"] = values[:, axis] + 0.0  # no "-0"
         return pd.DataFrame(columns)
 
 
@@ -59,8 +59,8 @@ Series = Mapping[Placement, SensorSeries]
 
 
 def to_csv(series: SensorSeries) -> str:
-    """CSV text with the fixed columns, micrometre and finer."""
-    text: str = series.to_frame().to_csv(index=False, float_format="%.6g", lineterminator="\n")
+    """CSV text with the fixed columns, six decimals: microseconds and micrometres."""
+    text: str = series.to_frame().to_csv(index=False, float_format="%.6f", lineterminator="\n")
     return text
 
 

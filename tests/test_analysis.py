@@ -151,6 +151,44 @@ def test_the_paper_to_the_letter_runs_on_a_real_walk_and_finds_fewer_rests(data_
     assert ours.provenance.settings_sha256 != paper.provenance.settings_sha256
 
 
+def test_the_paper_to_the_letter_says_where_it_misses_rests_and_what_the_knee_was_corrected_by(
+    data_dir: Path,
+) -> None:
+    folder = data_dir / "mtw-10m-walk"
+    feet = {Placement.LEFT_FOOT: folder / "1-4_lf.txt", Placement.RIGHT_FOOT: folder / "1-4_rf.txt"}
+    result = analyze(read_recording(placements=feet), Settings(method="ikizoglu2018")).result
+    assert "few_rests" in [warning.code for warning in result.warnings]
+    assert all(
+        p.status != "ok" for p in result.parameters if p.name in ("traversed_distance", "stride_length")
+    )
+    residual = analyze(_leg(data_dir), Settings(method="ikizoglu2018")).result.parameter(
+        "knee_residual", "right"
+    )
+    assert residual is not None
+    assert residual.value is not None
+    assert residual.value > 0.01
+
+
+def test_the_devices_orientation_is_refused_where_there_is_none(data_dir: Path) -> None:
+    recording = read_recording(placements={Placement.LEFT_FOOT: data_dir / "mtw-10m-walk" / "1-4_lf.txt"})
+    assert _refusal(recording, Settings(orientation=OrientationSource.DEVICE)).code == "no_device_orientation"
+
+
+def test_hand_checked_stance_and_swing_agree_within_2_percent_of_the_stride(data_dir: Path) -> None:
+    """Mean over the trials of swing minus hand-checked swing, in seconds: no bias beyond a sample."""
+    differences = []
+    for path in sorted((data_dir / "mtw-10m-walk").glob("*-[15].json")):
+        recording = read_recording(placements={Placement.LEFT_FOOT: path.with_name(f"{path.stem}_lf.txt")})
+        foot = analyze(recording).gait.feet[Side.LEFT]
+        labels = (np.array(json.loads(path.read_text())["LeftFootEvents"]) - recording.first_packet) / 100.0
+        for off, contact in zip(foot.events.foot_off_s, foot.events.initial_contact_s, strict=True):
+            nearest = labels[np.abs(labels[:, 0] - off).argmin()]
+            if abs(nearest[0] - off) < 0.05 and abs(nearest[1] - contact) < 0.05:
+                differences.append((contact - off) - (nearest[1] - nearest[0]))
+    assert len(differences) > 200
+    assert abs(np.mean(differences)) < 0.01
+
+
 def test_real_strides_agree_with_the_optical_foot_within_5_cm(data_dir: Path) -> None:
     optical = np.genfromtxt(data_dir / "mtw-leg-vicon" / "vicon-left-leg.csv", delimiter=",", names=True)
     middle = np.stack([0.5 * (optical[f"LTIO_{k}"] + optical[f"LTOE_{k}"]) for k in (1, 2)], axis=1)

@@ -5,6 +5,7 @@ Exit status: 0 done · 1 the input cannot be used (one message on standard error
 
 from __future__ import annotations
 
+import io
 import sys
 from collections.abc import Sequence
 
@@ -15,6 +16,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return its exit status."""
     from gaitlab.cli.parser import build_parser
 
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")  # a terminal without "—" gets a "?", not a traceback
     chosen = build_parser().parse_args(arguments)
     try:
         status: int = chosen.run(chosen)

@@ -42,8 +42,11 @@ def with_count(measurement: Measurement) -> Measurement:
     return measurement
 
 
-def of_both(left: Measurement, right: Measurement) -> Measurement:
-    """Mean of the two sides, each side counting alike; not determinable where one of them is not."""
+def of_both(left: Measurement, right: Measurement, *, a_mean: bool = True) -> Measurement:
+    """Mean of the two sides, each side counting alike; not determinable where one of them is not.
+
+    ``a_mean`` False where the sides are sums: then few strides are no reserve.
+    """
     definition = left.definition
     for one, side in ((left, Side.LEFT), (right, Side.RIGHT)):
         if one.status is Status.NOT_DETERMINABLE:
@@ -55,7 +58,7 @@ def of_both(left: Measurement, right: Measurement) -> Measurement:
     value = 0.5 * (left.value + right.value)
     sd = 0.5 * float(np.hypot(left.sd, right.sd))
     both = measured(definition, MeasuredSide.BOTH, value, sd, left.n + right.n)
-    if min(left.n, right.n) < FEW_STRIDES:
+    if a_mean and min(left.n, right.n) < FEW_STRIDES:
         return both.with_attention(
             f"It rests on {left.n} of the left and {right.n} of the right only; {TOO_FEW}"
         )

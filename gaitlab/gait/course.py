@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
 from gaitlab.gait import definitions as d
 from gaitlab.gait.averages import mean_of, of_both
 from gaitlab.gait.events import EventParams
-from gaitlab.gait.lengths import NO_FOOT, NO_STEADY, chosen_strides, independent_sd
+from gaitlab.gait.lengths import APART, NO_FOOT, NO_STEADY, chosen_strides, independent_sd
 from gaitlab.gait.measurement import Definition, MeasuredSide, Measurement, Status, measured, not_determinable
 from gaitlab.gait.strides import FootGait
 from gaitlab.gait.timing import LONGEST_STRIDE_S
-from gaitlab.motion.heading import Course
+from gaitlab.motion.course import Course
+from gaitlab.motion.frame import FrameParams
 from gaitlab.recording.model import Bools, Side
 
 BOTH = MeasuredSide.BOTH
+HEADING_SCATTER_DEG = 3.0
+"""Standard deviation of the foot's change of heading over the straight strides of ``mtw-10m-walk``."""
 
 
 def speeds(feet: Mapping[Side, FootGait]) -> list[Measurement]:
@@ -36,22 +40,19 @@ def speeds(feet: Mapping[Side, FootGait]) -> list[Measurement]:
     if both.status is Status.NOT_DETERMINABLE:
         known = [one for one in steady if one.value is not None]
         if known:
-            both = Measurement(d.STEADY_SPEED, BOTH, known[0].value, known[0].sd, known[0].n)
-            both = both.with_attention(f"It rests on the {known[0].side} foot alone.")
+            both = replace(known[0], side=BOTH).with_attention(f"It rests on the {known[0].side} foot alone.")
     return [*velocity, of_both(*velocity), both]
 
 
 def _speed(definition: Definition, side: Side, foot: FootGait, rows: Bools, reason: str) -> Measurement:
     """Mean of stride length over stride time; a stride after standing has no contact before it and no stride time."""
     contact = foot.events.initial_contact_s
-    k = np.flatnonzero(rows)
-    k = k[k > 0]
-    k = k[foot.walking[k - 1]]
+    k = np.flatnonzero(rows & foot.continued)
     duration = contact[k] - contact[k - 1]
     usable = (duration > 0) & (duration <= LONGEST_STRIDE_S)
     k, duration = k[usable], duration[usable]
     values = foot.length_m[k] / duration
-    jitter = np.sqrt(2.0) * EventParams().event_sd_s * values / duration
+    jitter = np.sqrt(2.0) * EventParams().sd_s(foot.motion.rate_hz) * values / duration
     independent = np.hypot(independent_sd(foot)[k] / duration, jitter)
     common = foot.common_sd * float(values.mean()) if len(values) else 0.0
     return mean_of(definition, side, values, independent, common, reason)
@@ -74,7 +75,7 @@ def turns(course: Course) -> list[Measurement]:
     ]
 
 
-def path_deviation(feet: Mapping[Side, FootGait], course: Course) -> Measurement:
+def path_deviation(feet: Mapping[Side, FootGait], course: Course, stood_together: bool) -> Measurement:
     """How far the points midway between the feet stray from a straight line on the first straight part."""
     missing = [side for side in Side if side not in feet]
     if missing:
@@ -83,6 +84,8 @@ def path_deviation(feet: Mapping[Side, FootGait], course: Course) -> Measurement
         )
     if not course.straights:
         return not_determinable(d.STRAIGHTNESS, BOTH, "The walk has no straight part of at least a metre.")
+    if not stood_together:
+        return not_determinable(d.STRAIGHTNESS, BOTH, APART)
     low, high = course.straights[0]
     times = np.arange(low, high, 0.1)
     paths = []
@@ -100,7 +103,7 @@ def path_deviation(feet: Mapping[Side, FootGait], course: Course) -> Measurement
     across = np.linalg.svd(centred, full_matrices=False)[2][1]
     deviation = centred @ across
     sd = 0.5 * float(np.sqrt(sum(np.mean(independent_sd(foot) ** 2) for foot in feet.values() if len(foot))))
-    n = int(sum(foot.straight.sum() for foot in feet.values()))
+    n = int(sum(np.sum(foot.part == 0) for foot in feet.values()))
     return measured(d.STRAIGHTNESS, BOTH, float(deviation.std()), sd, n)
 
 
@@ -114,6 +117,8 @@ def start_to_end(feet: Mapping[Side, FootGait]) -> list[Measurement]:
             continue
         foot = feet[side]
         gap = float(np.linalg.norm((foot.motion.rest_position_m[-1] - foot.motion.rest_position_m[0])[:2]))
-        sd = float(np.sqrt(np.sum(independent_sd(foot) ** 2)))
+        turned = FrameParams().heading_sd_rad * float(foot.length_m.sum())
+        random = float(np.sqrt(np.sum(independent_sd(foot) ** 2)))
+        sd = float(np.linalg.norm([random, turned, foot.common_sd * gap]))
         sides.append(measured(d.CLOSING_ERROR, MeasuredSide(side), gap, sd, len(foot)))
     return sides

@@ -56,7 +56,7 @@ COURSE_CHECK = _definition(
     "%",
     "test",
     1,
-    "How far the leading foot came forward on the first straight part, less the course, in % of the course: a check of"
+    "How far forward the leading foot's farthest place of rest lies, less the course, in % of the course: a check of"
     " scale where the person stopped at the end of the course. It is shown, never used.",
     signed=True,
 )
@@ -104,8 +104,8 @@ STEP_LENGTH = _definition(
     "m",
     "length",
     3,
-    "Distance along the line of walking from the other foot's place of rest to this foot's; mean of the steady steps."
-    " It assumes that the feet stood side by side before the walk and walk in the same direction.",
+    "Distance along the line of walking from the other foot's place of rest to this foot's; mean of the steady steps of"
+    " the first straight part. It assumes that the feet stood side by side before the walk and walk in the same direction.",
     GAITRITE,
     signed=True,
 )
@@ -115,8 +115,8 @@ STEP_WIDTH = _definition(
     "m",
     "length",
     3,
-    "Distance across the line of walking between the two feet's places of rest; mean of the steady steps. Sensors on the"
-    " feet do not see each other: it assumes how far apart the feet stood before the walk.",
+    "Distance across the line of walking between the two feet's places of rest; mean of the steady steps of the first"
+    " straight part. Sensors on the feet do not see each other: it assumes how far apart the feet stood before the walk.",
     "İkizoğlu et al. 2018, table 1; Rebula et al. 2013 (not directly observable)",
     signed=True,
 )
@@ -126,7 +126,7 @@ CADENCE = _definition(
     "steps/min",
     "time",
     1,
-    "60 divided by the mean time from one initial contact to the next of the other foot, on straight parts.",
+    "60 divided by the mean step time of both feet; steady steps only.",
     IKIZOGLU,
 )
 STRIDE_TIME = _definition(
@@ -144,7 +144,7 @@ STEP_TIME = _definition(
     "s",
     "time",
     3,
-    "From the other foot's initial contact to this foot's; mean of the straight parts.",
+    "From the other foot's initial contact to this foot's; mean of the steady steps.",
     IKIZOGLU,
 )
 STANCE = _definition(
@@ -180,8 +180,7 @@ STOP_DURATION = _definition(
     "s",
     "time",
     2,
-    "Total time, between the first foot off and the last initial contact, in which both feet rest at once for longer than a"
-    " stop takes to be one (1 s).",
+    "Total time, between the first and the last stride, in which both feet rest at once for longer than 1 s.",
     IKIZOGLU,
 )
 TURN_DURATION = _definition(
@@ -225,8 +224,8 @@ KNEE_SWAY = _definition(
     "m",
     "knee",
     3,
-    "Standard deviation of the knee's movement across the line of walking while its foot rests, its straight drift over the"
-    " rest taken out; root mean square over the rests on straight parts.",
+    "Standard deviation of the knee's movement across the line of walking while its foot rests, its straight drift over"
+    " the rest (about 0.3 s) taken out, so that only fast sway is seen; root mean square over the rests on straight parts.",
     "İkizoğlu et al. 2018, §5 (sway of the legs); formula: gaitlab",
 )
 KNEE_RESIDUAL = _definition(

@@ -17,17 +17,26 @@ class EventParams:
     Attributes
     ----------
     off_speed_share : float
-        Foot off is when the foot's speed first passes this share of the swing's peak: of the shares from 0.1 to 0.5
-        the one that agrees best with the hand-checked events of ``mtw-10m-walk``.
+        Foot off is when the foot's speed first passes this share of the swing's peak.
+    contact_late_s : float
+        The median of the three witnesses of initial contact comes this much after it.
     event_sd_s : float
-        Standard deviation of both events against the same hand-checked ones, tenth part trimmed.
+        Standard deviation of both events against the hand-checked ones of ``mtw-10m-walk`` (1,603 matched swings, a
+        tenth trimmed): 13 ms each.
     event_bias_sd_s : float
         What may be common to all events of one kind in a recording.
+
+    The share and the delay were set so that the mean error against those hand-checked events is nil.
     """
 
-    off_speed_share: float = 0.3
-    event_sd_s: float = 0.02
+    off_speed_share: float = 0.36
+    contact_late_s: float = 0.02
+    event_sd_s: float = 0.013
     event_bias_sd_s: float = 0.01
+
+    def sd_s(self, rate_hz: float) -> float:
+        """Standard uncertainty of an event read off samples at this rate."""
+        return float(np.hypot(self.event_sd_s, 1.0 / rate_hz / np.sqrt(12.0)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,15 +50,14 @@ class FootEvents:
 def find_events(foot: FootMotion, params: EventParams | None = None) -> FootEvents:
     """Find foot off and initial contact in each swing (the movement from one rest to the next).
 
-    Foot off: the speed of the foot first passes 30 % of the swing's peak.
+    Foot off: the speed of the foot first passes 36 % of the swing's peak.
 
     Initial contact: the median of three witnesses after the peak of forward speed: the end of the fastest descent
     (minimum of vertical velocity), the fastest slap of the forefoot to the ground (maximum of the angular rate that
     lowers the toes) and the largest jerk. One of them may fail (a flat landing has no slap, a soft one no jerk),
     the median stands.
 
-    Ours; no template of a population and no axis of the sensor enters. Where a foot only turns on the spot the
-    direction of its toes is taken for the direction of movement.
+    Ours; no template of a population and no axis of the sensor enters.
     """
     p = params or EventParams()
     rests = foot.rests
@@ -65,7 +73,8 @@ def find_events(foot: FootMotion, params: EventParams | None = None) -> FootEven
         fast = speed[start:end]
         peak = int(np.argmax(foot.velocity_mps[start:end, :2] @ forward))
         top = max(float(fast.max()), 1e-9)
-        off_row = start + int(np.argmax(fast > p.off_speed_share * top))
+        limit = p.off_speed_share * top
+        off_row = start + int(np.argmax(fast > limit))
         after = slice(start + peak, end)
         witnesses = (
             np.argmin(foot.velocity_mps[after, 2]),
@@ -73,8 +82,10 @@ def find_events(foot: FootMotion, params: EventParams | None = None) -> FootEven
             np.argmax(jerk[after]),
         )
         contact_row = start + peak + int(np.median(witnesses))
-        off[k] = foot.time_s[off_row]
-        contact[k] = foot.time_s[max(contact_row, off_row)]
+        before, beyond = speed[max(off_row - 1, 0)], speed[off_row]
+        early = (beyond - limit) / (beyond - before) / foot.rate_hz if beyond > limit > before else 0.0
+        off[k] = foot.time_s[off_row] - early
+        contact[k] = max(foot.time_s[contact_row] - p.contact_late_s, off[k])
     return FootEvents(off, contact)
 
 

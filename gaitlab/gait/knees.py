@@ -18,6 +18,8 @@ SWAY_SD_M = 0.005
 """Uncertainty of the knee's movement across the line of walking within a rest of about 0.3 s: an acceleration error
 of 0.08 m/s² and the sensor's play on the skin."""
 
+UNSEEN = "It is below what this method can see."
+
 
 @dataclass(frozen=True, eq=False)
 class KneeGait:
@@ -65,12 +67,13 @@ def knee_parameters(knees: Mapping[Side, KneeGait]) -> list[Measurement]:
         n, m = len(knee.sway_sd_m), len(knee.motion.residual_m)
         if n:
             sway = float(np.sqrt(np.mean(knee.sway_sd_m**2)))
-            measurements.append(with_count(measured(d.KNEE_SWAY, which, sway, SWAY_SD_M / np.sqrt(n), n)))
+            value = with_count(measured(d.KNEE_SWAY, which, sway, SWAY_SD_M / np.sqrt(n), n))
+            measurements.append(value if sway > SWAY_SD_M / np.sqrt(n) else value.with_attention(UNSEEN))
         else:
             measurements.append(
                 not_determinable(d.KNEE_SWAY, which, "No rest lies between two straight strides.")
             )
-        if m:
+        if m > 1:
             residual = float(np.sqrt(np.mean(knee.motion.residual_m**2)))
             measurements.append(measured(d.KNEE_RESIDUAL, which, residual, residual / np.sqrt(2.0 * m), m))
         else:

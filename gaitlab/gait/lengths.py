@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
 from gaitlab.gait import definitions as d
-from gaitlab.gait.averages import mean_of, of_both, with_count
+from gaitlab.gait.averages import mean_of, of_both
 from gaitlab.gait.measurement import MeasuredSide, Measurement, measured, not_determinable
 from gaitlab.gait.strides import FootGait, Steps
-from gaitlab.motion.heading import HeadingParams
+from gaitlab.motion.frame import FrameParams
 from gaitlab.recording.model import Bools, Floats, Side
 
 NO_STEADY = "There is no stride on a straight part."
+APART = "The feet are not known to have stood together before the walk, so the place of one says nothing of the other's."
+WIDTH_SD_M = 0.1
+"""A step width more uncertain than this, a whole step width, is not given."""
 NO_STEP = "There is no step between two strides on a straight part."
 NO_FOOT = "The {side} foot was not recorded."
 ONE_FOOT = "It needs both feet; the {side} foot was not recorded."
@@ -67,42 +71,77 @@ def traversed_distance(feet: Mapping[Side, FootGait]) -> list[Measurement]:
             sides.append(not_determinable(d.DISTANCE, MeasuredSide(side), "The foot made no stride."))
         else:
             sides.append(measured(d.DISTANCE, MeasuredSide(side), total, sd, n))
-    return [*sides, of_both(*sides)]
+    return [*sides, of_both(*sides, a_mean=False)]
 
 
-def step_length(feet: Mapping[Side, FootGait], steps: Steps) -> list[Measurement]:
-    """Left, right and both.
+def step_length(feet: Mapping[Side, FootGait], steps: Steps, stood_together: bool) -> list[Measurement]:
+    """Left, right and both, from the steady steps of the first straight part.
 
     A foot that stood 3 cm before the other makes one side's steps longer and the other's shorter by that much; the
     mean of both sides does not know of it.
     """
     missing = [side for side in Side if side not in feet]
-    if missing:
-        reason = ONE_FOOT.format(side=missing[0])
+    if missing or not stood_together:
+        reason = ONE_FOOT.format(side=missing[0]) if missing else APART
         return [not_determinable(d.STEP_LENGTH, side, reason) for side in MeasuredSide]
-    stagger = HeadingParams().standing_stagger_sd_m
-    reason = NO_STEP
-    sides = []
-    for side in Side:
-        rows = steps.steady & (steps.left == (side is Side.LEFT))
-        spread = _drift_between(feet)
-        value = mean_of(
-            d.STEP_LENGTH, side, steps.length_m[rows], 0.0, float(np.hypot(stagger, spread)), reason
+    params, steady = FrameParams(), _first_steps(steps)
+    common = float(np.hypot(params.standing_stagger_sd_m, _drift_between(feet)))
+    left, right = (
+        mean_of(
+            d.STEP_LENGTH,
+            side,
+            steps.length_m[steady & (steps.left == (side is Side.LEFT))],
+            0.0,
+            common,
+            NO_STEP,
         )
-        if value.value is not None:
-            value = value.with_attention(
-                "It assumes that the feet stood side by side (± 3 cm) before the walk."
-            )
-        sides.append(value)
-    left, right = sides
+        for side in Side
+    )
     both = of_both(left, right)
-    if both.value is not None:
-        common = 0.5 * max(feet[side].common_sd for side in Side) * 2.0 * both.value
-        random = 0.5 * float(np.mean([_mean_independent(feet[side]) for side in Side]))
-        both = with_count(
-            measured(d.STEP_LENGTH, MeasuredSide.BOTH, both.value, float(np.hypot(common, random)), both.n)
+    sides = [
+        one.with_attention("It assumes that the feet stood side by side (± 3 cm) before the walk.")
+        for one in (left, right)
+    ]
+    if both.value is None:
+        return [*sides, both]
+    shared = float(np.hypot(feet[Side.LEFT].common_sd, feet[Side.RIGHT].common_sd)) / 2.0 * both.value
+    random = float(np.mean([_mean_independent(feet[side]) for side in Side])) / 2.0
+    return [*sides, replace(both, sd=float(np.hypot(shared, random)))]
+
+
+def step_width(feet: Mapping[Side, FootGait], steps: Steps, stood_together: bool) -> list[Measurement]:
+    """Both feet together, from the steady steps of the first straight part.
+
+    The assumed distance between the standing feet and the direction of each foot dominate its uncertainty; whether it
+    is given depends on that alone, never on the value.
+    """
+    both = MeasuredSide.BOTH
+    missing = [side for side in Side if side not in feet]
+    if missing or not stood_together:
+        reason = ONE_FOOT.format(side=missing[0]) if missing else APART
+        return [not_determinable(d.STEP_WIDTH, both, reason)]
+    widths = steps.width_m[_first_steps(steps)]
+    if not len(widths):
+        return [not_determinable(d.STEP_WIDTH, both, NO_STEP)]
+    params = FrameParams()
+    sd = float(np.hypot(params.standing_width_sd_m, _drift_between(feet)))
+    value = float(widths.mean())
+    if sd > WIDTH_SD_M:
+        reason = (
+            "Sensors on the feet do not see each other. With the feet taken to stand 17 ± 5 cm apart before the walk the"
+            f" step width would be {100 * value:.0f} ± {100 * sd:.0f} cm, which says too little."
         )
-    return [left, right, both]
+        return [not_determinable(d.STEP_WIDTH, both, reason, len(widths))]
+    reason = (
+        "It assumes that the feet stood 17 ± 5 cm apart before the walk and walked in the same direction."
+    )
+    return [measured(d.STEP_WIDTH, both, value, sd, len(widths)).with_attention(reason)]
+
+
+def _first_steps(steps: Steps) -> Bools:
+    """Steady steps of the first straight part: later the two paths have drifted apart."""
+    first: Bools = steps.steady & (steps.part == 0)
+    return first
 
 
 def _mean_independent(foot: FootGait) -> float:
@@ -112,34 +151,13 @@ def _mean_independent(foot: FootGait) -> float:
 
 
 def _drift_between(feet: Mapping[Side, FootGait]) -> float:
-    """How far the two feet's paths may have drifted apart by the middle of the walk, in metres, per axis."""
-    squares = [0.5 * float(np.sum(independent_sd(foot) ** 2)) for foot in feet.values()]
-    return float(np.sqrt(0.5 * sum(squares)))
-
-
-def step_width(feet: Mapping[Side, FootGait], steps: Steps) -> list[Measurement]:
-    """Both feet together; the assumed distance between the standing feet dominates its uncertainty."""
-    both = MeasuredSide.BOTH
-    missing = [side for side in Side if side not in feet]
-    if missing:
-        return [not_determinable(d.STEP_WIDTH, both, ONE_FOOT.format(side=missing[0]))]
-    widths = steps.width_m[steps.steady]
-    if not len(widths):
-        return [not_determinable(d.STEP_WIDTH, both, NO_STEP)]
-    params = HeadingParams()
-    sd = float(np.hypot(params.standing_width_sd_m, _drift_between(feet)))
-    value = float(widths.mean())
-    if sd > 0.5 * abs(value) or value < 0:
-        return [
-            not_determinable(
-                d.STEP_WIDTH,
-                both,
-                "Sensors on the feet do not see each other. With the feet taken to stand 17 ± 5 cm apart before the walk the"
-                f" step width would be {100 * value:.0f} ± {100 * sd:.0f} cm, which says too little.",
-                len(widths),
-            )
-        ]
-    reason = (
-        "It assumes that the feet stood 17 ± 5 cm apart before the walk and walked in the same direction."
-    )
-    return [measured(d.STEP_WIDTH, both, value, sd, len(widths)).with_attention(reason)]
+    """How far the two feet's paths may have drifted apart by the middle of the first straight part, in metres, per axis."""
+    total = 0.0
+    for foot in feet.values():
+        first = foot.part == 0
+        half_way = 0.5 * float(foot.length_m[first].sum())
+        total += (
+            0.25 * float(np.sum(independent_sd(foot)[first] ** 2))
+            + (0.5 * FrameParams().heading_sd_rad * half_way) ** 2
+        )
+    return float(np.sqrt(total))

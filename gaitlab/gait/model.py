@@ -9,7 +9,7 @@ from gaitlab.gait.knees import KneeGait
 from gaitlab.gait.measurement import Measurement
 from gaitlab.gait.strides import FootGait
 from gaitlab.gait.timed_walk import TimedCourse
-from gaitlab.motion.heading import Course
+from gaitlab.motion.course import Course
 from gaitlab.recording.model import Finding, Side
 
 

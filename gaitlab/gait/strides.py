@@ -9,13 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from gaitlab.gait.events import FootEvents, find_events
-from gaitlab.motion.heading import Course, turning_strides
-from gaitlab.motion.model import FootMotion
+from gaitlab.motion.course import Course, CourseParams, Span, Swings
+from gaitlab.motion.model import FootMotion, Indices
 from gaitlab.recording.model import Bools, Floats, Side
 
-MIN_WALKING_STRIDE_M = 0.1
-"""A shorter movement of a foot is a shift of place, not a stride of a walk (shortest stride in mobgap's gates: 0.15
-m)."""
+DOUBTFUL_SHARE = 0.1
+"""A stride with a larger share of lost or saturated rows is left out of means, where others are left."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,14 +24,18 @@ class FootGait:
     Attributes
     ----------
     start_s, end_s : ndarray
-        Quietest moments of the two rests.
+        Instants within the two rests: the quietest, or where the foot has stood for long, the last and the first.
     length_m, length_sd_m : ndarray
         Horizontal distance between the rests and its standard uncertainty.
     common_sd : float
         Part of the relative uncertainty of the lengths that all strides share (scale).
-    turning, straight, steady : ndarray of bool
-        The foot turns in the stride; it lies in a straight part and walks; and is neither the first nor the last
-        there (of a walk that has no such stride, all straight ones: see ``few_straight``).
+    turning, walking : ndarray of bool
+        The foot turns in the stride; the stride belongs to a walk.
+    bout, part : ndarray of int
+        Which bout and which straight part it belongs to; −1 for none.
+    steady : ndarray of bool
+        It lies in a straight part and is neither the first nor the last there (of a walk that has no such stride,
+        all straight ones: see ``few_straight``).
     few_straight : bool
         No straight part has a stride between its first and its last.
     doubtful : ndarray of bool
@@ -47,7 +50,9 @@ class FootGait:
     length_sd_m: Floats
     common_sd: float
     turning: Bools
-    straight: Bools
+    walking: Bools
+    bout: Indices
+    part: Indices
     steady: Bools
     few_straight: bool
     doubtful: Bools
@@ -56,76 +61,96 @@ class FootGait:
         return len(self.length_m)
 
     @property
-    def walking(self) -> Bools:
-        """Strides that belong to a walk."""
-        return (self.length_m >= MIN_WALKING_STRIDE_M) | self.turning
+    def straight(self) -> Bools:
+        """Strides of straight parts."""
+        straight: Bools = self.part >= 0
+        return straight
+
+    @property
+    def continued(self) -> Bools:
+        """Strides before which the foot walked already, in the same bout: their stride time is known."""
+        continued = np.zeros(len(self), dtype=np.bool_)
+        continued[1:] = self.walking[1:] & self.walking[:-1] & (self.bout[1:] == self.bout[:-1])
+        return continued
 
 
 def foot_gait(motion: FootMotion, course: Course, common_sd: float) -> FootGait:
     """Strides of a foot on a course."""
-    moments = motion.time_s[motion.rests.moment]
-    start, end = moments[:-1], moments[1:]
     length = np.linalg.norm(np.diff(motion.rest_position_m, axis=0)[:, :2], axis=1)
-    events = find_events(motion)
-    turning = turning_strides(motion)
-    straight = np.zeros(len(length), dtype=np.bool_)
+    start, end = _bounds(motion)
+    if len(length):
+        swings = Swings.of(motion, CourseParams())
+        turning, walking, middle = swings.turning, swings.walking, swings.middle_s
+    else:
+        turning = walking = np.zeros(0, dtype=np.bool_)
+        middle = np.zeros(0)
+    bout = _index_of(middle, course.bouts, walking)
+    part = _index_of(middle, course.straights, walking & ~turning)
     steady = np.zeros(len(length), dtype=np.bool_)
-    middle = 0.5 * (events.foot_off_s + events.initial_contact_s)
-    for low, high in course.straights:
-        inside = (middle >= low) & (middle <= high) & ~turning & (length >= MIN_WALKING_STRIDE_M)
-        straight |= inside
-        rows = np.flatnonzero(inside)
-        steady[rows[1:-1]] = True
+    for index in range(len(course.straights)):
+        steady[np.flatnonzero(part == index)[1:-1]] = True
     few_straight = not steady.any()
-    if few_straight:
-        steady = straight.copy()
     return FootGait(
         motion,
-        events,
+        find_events(motion),
         start,
         end,
         length,
         motion.displacement_sd_m,
         common_sd,
         turning,
-        straight,
-        steady,
+        walking,
+        bout,
+        part,
+        part >= 0 if few_straight else steady,
         few_straight,
-        _doubtful(motion),
+        motion.doubtful_share > DOUBTFUL_SHARE,
     )
 
 
-def _doubtful(motion: FootMotion) -> Bools:
-    if len(motion.rests) < 2:
-        return np.zeros(0, dtype=np.bool_)
-    bad = np.concatenate([[0], np.cumsum(~motion.received | motion.saturated)])
-    low, high = motion.rests.moment[:-1], motion.rests.moment[1:]
-    share: Bools = (bad[high] - bad[low]) / np.maximum(high - low, 1) > 0.1
-    return share
+def _bounds(motion: FootMotion, long_rest_s: float = 1.0) -> tuple[Floats, Floats]:
+    """Instants at which strides start and end: in a long rest not its middle, or standing would be walking."""
+    rests, time_s = motion.rests, motion.time_s
+    last = np.maximum(rests.end - 1, rests.start)
+    long = (last - rests.start) / motion.rate_hz > long_rest_s
+    leave = np.where(long, last, rests.moment)
+    reach = np.where(long, rests.start, rests.moment)
+    return time_s[leave[:-1]], time_s[reach[1:]]
+
+
+def _index_of(middle_s: Floats, spans: tuple[Span, ...], belongs: Bools) -> Indices:
+    """Index of the interval in which each stride lies; −1 for none."""
+    index = np.full(len(middle_s), -1, dtype=np.intp)
+    for k, (low, high) in enumerate(spans):
+        index[np.searchsorted(middle_s, low) : np.searchsorted(middle_s, high, "right")] = k
+    index[~belongs] = -1
+    return index
 
 
 @dataclass(frozen=True, eq=False)
 class Steps:
-    """Steps on straight parts, in order of their initial contacts; arrays have one entry a step.
+    """Steps of straight parts, in order of their initial contacts; arrays have one entry a step.
 
     Attributes
     ----------
     left : ndarray of bool
         The left foot made it.
-    contact_s, time_s : ndarray
-        Its initial contact, and the time since the other foot's.
+    time_s : ndarray
+        Its initial contact, less that of the other foot before it.
     length_m, width_m : ndarray
-        From the other foot's place of rest to this one's: along and across the line of walking (the line between this
-        foot's places of rest before and after). Width is positive with the left foot on the left.
+        From the other foot's place of rest to this one's: along and across the line of walking (the line between
+        this foot's places of rest before and after). Width is positive with the left foot on the left.
+    part : ndarray of int
+        The straight part.
     steady : ndarray of bool
-        The stride that made it is steady.
+        The stride that made it is steady, and neither it nor the other foot's is doubtful.
     """
 
     left: Bools
-    contact_s: Floats
     time_s: Floats
     length_m: Floats
     width_m: Floats
+    part: Indices
     steady: Bools
 
     def __len__(self) -> int:
@@ -137,8 +162,6 @@ def find_steps(feet: Mapping[Side, FootGait]) -> Steps:
 
     A step is counted where the other foot's initial contact was the one just before, in the same straight part.
     """
-    if len(feet) < 2:
-        return _no_steps()
     contacts = [
         (float(foot.events.initial_contact_s[k]), side, int(k))
         for side, foot in feet.items()
@@ -148,24 +171,18 @@ def find_steps(feet: Mapping[Side, FootGait]) -> Steps:
     places = {side: foot.motion.rest_position_m for side, foot in feet.items()}
     rows = []
     for (t_before, other, j), (t, side, k) in itertools.pairwise(contacts):
-        if side is other or not (feet[side].straight[k] and feet[other].walking[j]):
-            continue
-        if not feet[other].straight[j]:
+        own, others = feet[side], feet[other]
+        if side is other or own.part[k] < 0 or own.part[k] != others.part[j]:
             continue
         here, there = places[side], places[other]
         line = (here[k + 1] - here[k])[:2]
         line = line / max(float(np.linalg.norm(line)), 1e-9)
         step = (here[k + 1] - there[j + 1])[:2]
         across = float(step @ np.array([-line[1], line[0]])) * (1.0 if side is Side.LEFT else -1.0)
-        rows.append(
-            (side is Side.LEFT, t, t - t_before, float(step @ line), across, bool(feet[side].steady[k]))
-        )
+        steady = bool(own.steady[k]) and not (own.doubtful[k] or others.doubtful[j])
+        rows.append((side is Side.LEFT, t - t_before, float(step @ line), across, int(own.part[k]), steady))
     if not rows:
-        return _no_steps()
-    left, contact, time, length, width, steady = (np.array(column) for column in zip(*rows, strict=True))
-    return Steps(left, contact, time, length, width, steady)
-
-
-def _no_steps() -> Steps:
-    none, no = np.zeros(0), np.zeros(0, dtype=np.bool_)
-    return Steps(no, none, none, none, none, no)
+        none, no = np.zeros(0), np.zeros(0, dtype=np.bool_)
+        return Steps(no, none, none, none, np.zeros(0, dtype=np.intp), no)
+    left, time, length, width, part, steady_ = (np.array(column) for column in zip(*rows, strict=True))
+    return Steps(left, time, length, width, part, steady_)

@@ -12,124 +12,154 @@ from gaitlab.gait.events import EventParams
 from gaitlab.gait.lengths import independent_sd
 from gaitlab.gait.measurement import MeasuredSide, Measurement, measured, not_determinable
 from gaitlab.gait.strides import FootGait
-from gaitlab.gait.timing import walking_span
-from gaitlab.motion.heading import Course
+from gaitlab.motion.course import Course
+from gaitlab.motion.frame import anchor_rest
 from gaitlab.recording.model import Floats, Side
 
 START_RULE = "first foot off after standing"
 BOTH = MeasuredSide.BOTH
 END_SHARE = 0.05
 """A straight walk that ends farther than this share from the end of the course did not end there."""
+STANDING_S = 0.5
+"""A foot stands before the walk where it has rested for at least this long."""
 
 
 @dataclass(frozen=True)
 class TimedCourse:
-    """When the walk over the course began and ended, in seconds, with the uncertainty of the duration."""
+    """When the walk over the course began and ended, in seconds, with the uncertainty of the duration.
+
+    ``reached_m`` is how far the leading foot's farthest place of rest lies forward, ``place_sd_m`` how uncertain that is;
+    ``reserve`` says why the time wants attention, or is empty.
+    """
 
     course_m: float
     start_s: float
     end_s: float
     sd_s: float
+    reached_m: float
+    place_sd_m: float
+    reserve: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class _Way:
+    """Way of one foot forward from where it stood before a straight part, from ``start_s`` (its foot off) on."""
+
+    foot: FootGait
+    start_s: float
+    stood_s: float
+    time_s: Floats
+    forward_m: Floats
+    places_m: Floats
+
+    def crossing_s(self, distance_m: float) -> float | None:
+        """When the foot has come that far, interpolated between samples; None where it does not."""
+        over = np.flatnonzero(self.forward_m >= distance_m)
+        if not len(over) or over[0] == 0:
+            return None
+        row = int(over[0])
+        gain = self.forward_m[row] - self.forward_m[row - 1]
+        share = (distance_m - self.forward_m[row - 1]) / gain if gain > 0 else 0.0
+        return float(self.time_s[row - 1] + share * (self.time_s[row] - self.time_s[row - 1]))
 
 
 def time_course(feet: Mapping[Side, FootGait], course: Course, course_m: float | None) -> TimedCourse | str:
     """Time the walk over the course, or say in a sentence why it cannot be timed.
 
-    The clock starts with the first foot off and stops when the leading foot has come ``course_m`` forward from
-    where it stood, interpolated between samples, on the first straight part or in the turn that ends it.
+    The clock starts with the first foot off of the straight part that follows standing, and stops when the leading
+    foot has come ``course_m`` forward from where it stood, interpolated between samples, before the turn that ends
+    the part is over.
     """
     if course_m is None:
         return "No length of a course was given."
-    span = walking_span(feet)
-    if span is None:
+    if not course.bouts:
         return "Nobody walks in this recording."
-    if not course.straights:
-        return "The walk has no straight part of at least a metre."
-    if not any(foot.motion.offsets.standing for foot in feet.values()):
-        return "Nobody stands still before the walk, so the start is not in the recording."
-    until = course.turns[0].end_s if course.turns else course.straights[0][1] + 1.0
-    end = _reached(feet, course_m, span[0], until)
+    starts = [k for k, part in enumerate(course.straights) if course.follows_standing(part)]
+    reached, unseen = 0.0, False
+    for k in starts:
+        ways = [way for way in (_way(foot, course, k) for foot in feet.values()) if way is not None]
+        if len(ways) < len(feet) or min(way.stood_s for way in ways) < STANDING_S:
+            unseen = True
+            continue
+        timed = _timed(ways, course_m)
+        if timed is not None:
+            return timed
+        reached = max(reached, *(float(way.forward_m.max(initial=0.0)) for way in ways))
+    if unseen and reached == 0.0:
+        return "Nobody is seen to stand before the walk, so its start is not in the recording."
+    if not starts:
+        return "The walk has no straight part of at least a metre that begins from standing."
+    return f"The leading foot came {reached:.2f} m forward before the walk turned or ended; the course is {course_m:g} m."
+
+
+def _way(foot: FootGait, course: Course, part: int) -> _Way | None:
+    """The foot's way over a straight part; None where it makes no stride there."""
+    strides = np.flatnonzero(foot.part == part)
+    if not len(strides):
+        return None
+    motion, straight = foot.motion, course.straights[part]
+    rest = anchor_rest(motion, course, part)
+    stood = float(motion.time_s[motion.rests.end[rest] - 1] - motion.time_s[motion.rests.start[rest]])
+    after = [turn.end_s for turn in course.turns if turn.start_s >= straight[1] - 1e-6]
+    bout = next(b for b in course.bouts if b[0] <= straight[0] + 1e-6 and straight[1] <= b[1] + 1e-6)
+    until = min([*after, bout[1] + 0.5])
+    places = motion.rest_position_m[:, :2]
+    line = places[strides[-1] + 1] - places[rest]
+    line = line / max(float(np.linalg.norm(line)), 1e-9)
+    rows = slice(int(motion.rests.moment[rest]), int(np.searchsorted(motion.time_s, until)))
+    forward = (motion.position_m[rows, :2] - places[rest]) @ line
+    moments = motion.time_s[motion.rests.start]
+    inside = (np.arange(len(places)) > rest) & (moments <= until)
+    off = float(foot.events.foot_off_s[strides[0]])
+    return _Way(foot, off, stood, motion.time_s[rows], forward, (places[inside] - places[rest]) @ line)
+
+
+def _timed(ways: list[_Way], course_m: float) -> TimedCourse | None:
+    """Time over the course along these ways; None where no foot comes to its end."""
+
+    def reached(distance_m: float) -> float | None:
+        times = [way.crossing_s(distance_m) for way in ways]
+        return min((time for time in times if time is not None), default=None)
+
+    end = reached(course_m)
     if end is None:
-        came = forward_reach(feet, until)
-        return f"The leading foot came {came:.2f} m forward before the walk turned or ended; the course is {course_m:g} m."
-    place_sd = _time_sd(feet, course_m, span[0], until, end)
-    return TimedCourse(course_m, span[0], end, float(np.hypot(place_sd, EventParams().event_sd_s)))
+        return None
+    start = min(way.start_s for way in ways)
+    place_sd = float(np.mean([_place_sd(way.foot, course_m, end) for way in ways]))
+    before, beyond = reached(course_m - place_sd), reached(course_m + place_sd)
+    # the leading foot advances by steps: neither its speed at the crossing nor the mean speed alone turns place into time
+    by_place = 0.5 * (beyond - before) if before and beyond else place_sd * (end - start) / course_m
+    rate_hz = min(way.foot.motion.rate_hz for way in ways)
+    parts = [by_place, EventParams().sd_s(rate_hz), EventParams().event_bias_sd_s]
+    reserve = ""
+    if len(ways) == 1:
+        strides = ways[0].foot.events.initial_contact_s[ways[0].foot.straight]
+        parts.append(0.25 * float(np.median(np.diff(strides))) if len(strides) > 1 else 0.5)
+        reserve = "One foot alone does not tell which foot started and which one led at the end."
+    far = max(float(way.places_m.max(initial=0.0)) for way in ways)
+    return TimedCourse(course_m, start, end, float(np.linalg.norm(parts)), far, place_sd, reserve)
 
 
-def timed_walk(feet: Mapping[Side, FootGait], timed: TimedCourse | str, course: Course) -> list[Measurement]:
+def timed_walk(timed: TimedCourse | str) -> list[Measurement]:
     """Time and speed over the course, and the straight walk against its length."""
     if isinstance(timed, str):
         return [not_determinable(one, BOTH, timed) for one in (d.WALK_TIME, d.WALK_SPEED, d.COURSE_CHECK)]
     duration = timed.end_s - timed.start_s
     speed = timed.course_m / duration
-    until = course.turns[0].start_s if course.turns else course.straights[0][1] + 1.0
-    excess = forward_reach(feet, until) - timed.course_m
-    sd = _place_sd(feet, timed.course_m, timed.end_s)
-    check = measured(d.COURSE_CHECK, BOTH, 100.0 * excess / timed.course_m, 100.0 * sd / timed.course_m, 1)
-    if abs(excess) > END_SHARE * timed.course_m:
-        did = "gone on past" if excess > 0 else "turned before"
-        reason = f"The person seems to have {did} the end of the course: no check of scale then."
+    excess = timed.reached_m - timed.course_m
+    percent = 100.0 / timed.course_m
+    check = measured(d.COURSE_CHECK, BOTH, excess * percent, timed.place_sd_m * percent, 1)
+    if excess > END_SHARE * timed.course_m:
+        reason = "The person seems to have gone on past the end of the course: no check of scale then."
         check = check.with_attention(reason)
-    return [
+    times = [
         measured(d.WALK_TIME, BOTH, duration, timed.sd_s, 1),
         measured(d.WALK_SPEED, BOTH, speed, speed * timed.sd_s / duration, 1),
-        check,
     ]
+    return [*(one.with_attention(timed.reserve) if timed.reserve else one for one in times), check]
 
 
-def forward_reach(feet: Mapping[Side, FootGait], until_s: float) -> float:
-    """How far the leading foot came forward until then, in metres."""
-    return max(
-        float(_forward(foot)[foot.motion.time_s <= until_s].max(initial=0.0)) for foot in feet.values()
-    )
-
-
-def _forward(foot: FootGait) -> Floats:
-    """Way forward from where the foot stood, shape (n,)."""
-    motion = foot.motion
-    stood = motion.rest_position_m[0, 0] if len(motion.rests) else 0.0
-    forward: Floats = motion.position_m[:, 0] - stood
-    return forward
-
-
-def _reached(feet: Mapping[Side, FootGait], distance_m: float, from_s: float, until_s: float) -> float | None:
-    """When the leading foot has come that far forward; None where it does not."""
-    times = [_crossing(foot, distance_m, from_s, until_s) for foot in feet.values()]
-    return min((time for time in times if time is not None), default=None)
-
-
-def _crossing(foot: FootGait, distance_m: float, from_s: float, until_s: float) -> float | None:
-    """When a foot has come that far forward, interpolated between samples; None where it does not."""
-    time_s, forward = foot.motion.time_s, _forward(foot)
-    over = np.flatnonzero((forward >= distance_m) & (time_s >= from_s) & (time_s <= until_s))
-    if not len(over) or over[0] == 0:
-        return None
-    row = int(over[0])
-    gain = forward[row] - forward[row - 1]
-    share = (distance_m - forward[row - 1]) / gain if gain > 0 else 0.0
-    return float(time_s[row - 1] + share * (time_s[row] - time_s[row - 1]))
-
-
-def _time_sd(
-    feet: Mapping[Side, FootGait], course_m: float, from_s: float, until_s: float, end_s: float
-) -> float:
-    """Half the time between the places one standard uncertainty short of the end and one beyond it.
-
-    The leading foot advances by steps, so neither its speed at the crossing nor the mean speed alone says how an
-    error of place becomes one of time. Where it does not come as far as the second place, the mean speed stands in.
-    """
-    place_sd = _place_sd(feet, course_m, end_s)
-    before = _reached(feet, course_m - place_sd, from_s, until_s)
-    beyond = _reached(feet, course_m + place_sd, from_s, until_s)
-    if before is None or beyond is None:
-        return place_sd * (end_s - from_s) / course_m
-    return 0.5 * (beyond - before)
-
-
-def _place_sd(feet: Mapping[Side, FootGait], distance_m: float, until_s: float) -> float:
-    """Standard uncertainty of a foot's place along the way by then, in metres; mean of the feet."""
-    parts = []
-    for foot in feet.values():
-        independent = independent_sd(foot)[foot.start_s < until_s]
-        parts.append(float(np.hypot(np.sqrt(np.sum(independent**2)), foot.common_sd * distance_m)))
-    return float(np.mean(parts))
+def _place_sd(foot: FootGait, distance_m: float, until_s: float) -> float:
+    """Standard uncertainty of a foot's place along the way by then, in metres."""
+    independent = independent_sd(foot)[foot.start_s < until_s]
+    return float(np.hypot(np.sqrt(np.sum(independent**2)), foot.common_sd * distance_m))

@@ -3,22 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from gaitlab.gait import definitions as d
-from gaitlab.gait.averages import mean_of, of_both, with_count
+from gaitlab.gait.averages import mean_of, of_both
 from gaitlab.gait.events import EventParams
 from gaitlab.gait.lengths import NO_FOOT, NO_STEADY, NO_STEP, ONE_FOOT
-from gaitlab.gait.measurement import Definition, MeasuredSide, Measurement, measured, not_determinable
+from gaitlab.gait.measurement import (
+    Definition,
+    MeasuredSide,
+    Measurement,
+    Status,
+    measured,
+    not_determinable,
+)
 from gaitlab.gait.strides import FootGait, Steps
+from gaitlab.motion.course import Course
 from gaitlab.recording.model import Floats, Side
 
 LONGEST_STRIDE_S = 4.0
 """A longer time between two contacts of a foot holds a stop (mobgap's gate for a stride: 3 s)."""
-STOP_S = 1.0
-"""Both feet at rest for longer than this is a stop."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,9 +43,8 @@ class Phases:
 def phases_of(foot: FootGait) -> Phases:
     """Phases of each steady stride whose contact before it is known."""
     off, contact = foot.events.foot_off_s, foot.events.initial_contact_s
-    k = np.flatnonzero(foot.steady)
-    k = k[k > 0]
-    k = k[foot.walking[k - 1] & (contact[k] - contact[k - 1] <= LONGEST_STRIDE_S)]
+    k = np.flatnonzero(foot.steady & foot.continued)
+    k = k[contact[k] - contact[k - 1] <= LONGEST_STRIDE_S]
     stride = contact[k] - contact[k - 1]
     return Phases(
         contact[k - 1], off[k], stride, off[k] - contact[k - 1], contact[k] - off[k], foot.length_m[k]
@@ -49,7 +54,8 @@ def phases_of(foot: FootGait) -> Phases:
 def times_and_phases(feet: Mapping[Side, FootGait], steps: Steps) -> list[Measurement]:
     """Stride time, stance, swing, step time, double support, cadence."""
     params = EventParams()
-    jitter, bias = np.sqrt(2.0) * params.event_sd_s, np.sqrt(2.0) * params.event_bias_sd_s
+    rate_hz = min(foot.motion.rate_hz for foot in feet.values())
+    jitter, bias = np.sqrt(2.0) * params.sd_s(rate_hz), np.sqrt(2.0) * params.event_bias_sd_s
     phases = {side: phases_of(foot) for side, foot in feet.items()}
     measurements: list[Measurement] = []
 
@@ -133,43 +139,20 @@ def _step_times(feet: Mapping[Side, FootGait], steps: Steps, jitter: float, bias
     if both.value is None:
         return [*sides, both, not_determinable(d.CADENCE, MeasuredSide.BOTH, both.reason)]
     random_sd = jitter / np.sqrt(max(both.n, 1))
-    both = with_count(measured(d.STEP_TIME, MeasuredSide.BOTH, both.value, random_sd, both.n))
-    cadence = 60.0 / float(both.value or 1.0)
-    sd = cadence * random_sd / float(both.value or 1.0)
-    return [*sides, both, with_count(measured(d.CADENCE, MeasuredSide.BOTH, cadence, sd, both.n))]
+    cadence = 60.0 / both.value
+    value = measured(d.CADENCE, MeasuredSide.BOTH, cadence, cadence * random_sd / both.value, both.n)
+    value = value.with_attention(both.reason) if both.status is Status.ATTENTION else value
+    return [*sides, replace(both, sd=float(random_sd)), value]
 
 
-def walking_span(feet: Mapping[Side, FootGait]) -> tuple[float, float] | None:
-    """From the first foot off to the last initial contact of a walking stride, in seconds; None where nobody
-    walks."""
-    first, last = [], []
-    for foot in feet.values():
-        rows = np.flatnonzero(foot.walking)
-        if len(rows):
-            first.append(float(foot.events.foot_off_s[rows[0]]))
-            last.append(float(foot.events.initial_contact_s[rows[-1]]))
-    return (min(first), max(last)) if first else None
-
-
-def stop_duration(feet: Mapping[Side, FootGait]) -> Measurement:
-    """Total time of the stops between the first foot off and the last contact."""
+def stop_duration(feet: Mapping[Side, FootGait], course: Course) -> Measurement:
+    """Total time of the stops between two bouts of walking."""
     both = MeasuredSide.BOTH
     missing = [side for side in Side if side not in feet]
     if missing:
         return not_determinable(d.STOP_DURATION, both, ONE_FOOT.format(side=missing[0]))
-    span = walking_span(feet)
-    if span is None:
+    if not course.bouts:
         return not_determinable(d.STOP_DURATION, both, "Nobody walks in this recording.")
-    edges = []
-    for foot in feet.values():
-        for k in np.flatnonzero(foot.walking):
-            edges += [(float(foot.events.foot_off_s[k]), 1), (float(foot.events.initial_contact_s[k]), -1)]
-    edges.sort()
-    total, stops, moving, since = 0.0, 0, 0, span[0]
-    for time, change in edges:
-        if moving == 0 and time - since > STOP_S:
-            total, stops = total + time - since, stops + 1
-        moving += change
-        since = time
-    sd = EventParams().event_sd_s * np.sqrt(2.0 * max(stops, 1))
-    return measured(d.STOP_DURATION, both, total, float(sd), stops)
+    total = sum(end - start for start, end in course.stops)
+    sd = EventParams().event_sd_s * np.sqrt(2.0 * max(len(course.stops), 1))
+    return measured(d.STOP_DURATION, both, float(total), float(sd), len(course.stops))

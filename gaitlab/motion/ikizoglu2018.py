@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gaitlab.motion.integration import position_of, velocity_of
+from gaitlab.motion.integration import PathUncertainty, position_of, velocity_of
 from gaitlab.motion.model import Motion, Rests
 from gaitlab.recording.model import Floats, Sensor
 
@@ -35,11 +35,17 @@ class PaperParams:
     offset_end_s: float = 3.0
 
 
+UNCERTAINTY = PathUncertainty(unlinear_share=1.0, bridge=3.0**-0.5)
+"""Nothing is removed between rests: an acceleration error that is white over a swing of duration T and leaves Δv there
+makes a position error of Δv·T/√3."""
+
+
 def free_motion(sensor: Sensor, estimated: Motion, params: PaperParams | None = None) -> Motion:
     """Free acceleration as the paper takes it: the device's own, its mean from 2 s to 3 s removed per axis.
 
-    Deviations: where the file has no free acceleration, it is computed from the orientation; where the foot does
-    not stand from 2 s to 3 s, the mean is taken over the standing second that was found.
+    Deviations: where the file has no free acceleration, it is computed from the device's orientation, or from an
+    estimated one where there is none, with the sensor's static offsets removed; where the foot does not stand from
+    2 s to 3 s, the mean is taken over the standing second that was found.
     """
     p = params or PaperParams()
     acceleration = sensor.free_acc_mps2 if sensor.free_acc_mps2 is not None else estimated.acceleration_mps2

@@ -74,17 +74,29 @@ class PathUncertainty:
     rest_speed_mps : float
         A resting foot is not exactly still: speed of the optical mid-foot in the rests of ``mtw-leg-vicon``, 0.014 to
         0.025 m/s, marker noise included.
+    bridge : float
+        Position error at the end per velocity error and duration: 1/√12 for a Brownian bridge (drift removed linearly).
     doubt_factor : float
         The drift's part is widened by 1 + this · share of lost or saturated rows.
+    blind_gap_s, blind_sd_m : float
+        Over a longer gap than this the movement is not known, and the displacement is uncertain by a stride.
     """
 
     unlinear_share: float = 0.4
     rest_speed_mps: float = 0.01
+    bridge: float = 12.0**-0.5
     doubt_factor: float = 10.0
+    blind_gap_s: float = 0.3
+    blind_sd_m: float = 0.7
 
 
 def displacement_sd(
-    rests: Rests, rate_hz: float, gravity_error: float, length_m: Floats, doubtful: Floats
+    rests: Rests,
+    rate_hz: float,
+    gravity_error: float,
+    length_m: Floats,
+    doubtful: Floats,
+    uncertainty: PathUncertainty,
 ) -> Floats:
     """Standard uncertainty of the horizontal displacement from each rest to the next, in metres, shape (k − 1,).
 
@@ -98,12 +110,12 @@ def displacement_sd(
 
     ``doubtful`` (k − 1,) is the share of lost or saturated rows in each stride; it widens the first part.
     """
-    p = PathUncertainty()
+    p = uncertainty
     swing_s = (rests.start[1:] - np.maximum(rests.end[:-1] - 1, rests.start[:-1])) / rate_hz
     own = np.linalg.norm(rests.residual_mps[1:, :2], axis=1) / np.sqrt(2.0)
     common = np.sqrt(np.mean(own**2)) if len(own) else 0.0
     remaining = p.unlinear_share * np.sqrt(0.5 * (own**2 + common**2)) * (1.0 + p.doubt_factor * doubtful)
-    drift = remaining * swing_s / np.sqrt(12.0)
+    drift = remaining * swing_s * p.bridge
     rest = p.rest_speed_mps * swing_s
     scale = gravity_error * length_m / np.sqrt(3.0)
     sd: Floats = np.sqrt(drift**2 + rest**2 + scale**2)

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.linalg import solveh_banded
 
 from gaitlab.motion import ikizoglu2018
-from gaitlab.motion.foot import free_motion
+from gaitlab.motion.foot import method_motion
 from gaitlab.motion.integration import position_of
 from gaitlab.motion.model import FootMotion, Indices, KneeMotion, Motion
 from gaitlab.motion.orientation import OrientationSource
@@ -199,7 +199,7 @@ def track_knee(
     method : str
         ``gaitlab``, or ``ikizoglu2018`` for a constant velocity offset per cycle.
     """
-    free = free_motion(sensor, time_s, source)
+    free = method_motion(sensor, time_s, method, source)
     params = KneeParams()
     cycles = cycles_of(foot, free.n_samples, shift)
     if not len(cycles):
@@ -210,18 +210,18 @@ def track_knee(
     if method == "ikizoglu2018":
         pairs = [(int(a), int(b)) for a, b in zip(cycles.start, cycles.end, strict=True)]
         velocity = ikizoglu2018.correct_knee(free.raw_velocity_mps, pairs, cycles.step_m, free.rate_hz)
-    else:
-        velocity = correct_velocity(free.raw_velocity_mps, cycles, standing, free.rate_hz, params)
-    return _knee_motion(free, velocity, cycles)
+        return _knee_motion(free, velocity, cycles)
+    velocity = correct_velocity(free.raw_velocity_mps, cycles, standing, free.rate_hz, params)
+    return _knee_motion(free, velocity, cycles, velocity[cycles.start])
 
 
-def _knee_motion(free: Motion, velocity: Floats, cycles: Cycles) -> KneeMotion:
-    position = position_of(velocity, free.rate_hz)
+def _knee_motion(free: Motion, velocity: Floats, cycles: Cycles, started: Floats | None = None) -> KneeMotion:
+    """``started`` (m, 3): velocity with which each cycle really began; None: the uncorrected one."""
     raw = free.raw_position_m
     excess = raw[cycles.end] - raw[cycles.start] - cycles.step_m
-    # a velocity that was wrong when the cycle began is no fault of the cycle
-    carried = free.raw_velocity_mps[cycles.start] - velocity[cycles.start]
-    excess = excess - carried * ((cycles.end - cycles.start) / free.rate_hz)[:, None]
+    if started is not None:  # a velocity that was wrong when the cycle began is no fault of the cycle
+        carried = free.raw_velocity_mps[cycles.start] - started
+        excess = excess - carried * ((cycles.end - cycles.start) / free.rate_hz)[:, None]
     residual = np.linalg.norm(excess[:, :2], axis=1)
-    kept = vars(free) | {"velocity_mps": velocity, "position_m": position}
+    kept = vars(free) | {"velocity_mps": velocity, "position_m": position_of(velocity, free.rate_hz)}
     return KneeMotion(**kept, cycle_start=cycles.start, cycle_end=cycles.end, residual_m=residual)

@@ -32,6 +32,8 @@ class Offsets:
         False where nobody stood still for a second; the offsets are then the best that is known.
     gravity_mps2 : float
         Size of the specific force while standing, before any correction.
+    as_in_paper : bool
+        The second is the one the paper takes, 2 s to 3 s after the sensor's start.
     """
 
     start: int
@@ -40,6 +42,7 @@ class Offsets:
     gyr_radps: tuple[float, float, float]
     standing: bool
     gravity_mps2: float
+    as_in_paper: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +54,7 @@ class Rests:
     start, end, moment : ndarray (k,)
         First row, row after the last, and the quietest row of each rest.
     residual_mps : ndarray (k, 3)
-        Velocity, drift since the rest before it included, that the reset took away at ``moment``.
+        What the velocity had drifted to at ``start`` since the end of the rest before; 0 for the first.
     """
 
     start: Indices
@@ -68,10 +71,6 @@ class Rests:
         np.add.at(edges, self.start, 1)
         np.add.at(edges, self.end, -1)
         return np.cumsum(edges)[:n] > 0
-
-    def at(self, keep: Bools | Indices) -> Rests:
-        """The chosen rests."""
-        return Rests(self.start[keep], self.end[keep], self.moment[keep], self.residual_mps[keep])
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,12 +134,18 @@ class Motion:
 class FootMotion(Motion):
     """A foot: its rests are where its velocity is known.
 
-    ``displacement_sd_m`` (k − 1,) is the standard uncertainty of the horizontal displacement from each rest to the
-    next.
+    Attributes
+    ----------
+    rests : Rests
+    displacement_sd_m : ndarray (k − 1,)
+        Standard uncertainty of the horizontal displacement from each rest to the next.
+    doubtful_share : ndarray (k − 1,)
+        Share of lost or saturated rows in the movement between.
     """
 
     rests: Rests
     displacement_sd_m: Floats
+    doubtful_share: Floats
 
     def turned(self, yaw_rad: float) -> Self:
         """As ``Motion.turned``; the residual velocities turn with it."""

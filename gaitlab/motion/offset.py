@@ -25,7 +25,7 @@ class StandingParams:
         Where the paper takes it, from the start of the recording.
     max_rate_sd_radps, max_acc_sd_mps2 : float
         Largest scatter of gyroscope and accelerometer (norm of the axes' standard deviations) of a foot that stands.
-        MTw noise alone gives 0.008 and 0.03; the 92 feet of ``mtw-10m-walk`` stay below 0.02 and 0.07 in their
+        MTw noise alone gives 0.008 and 0.03; the 92 feet of ``mtw-10m-walk`` stay below 0.021 and 0.07 in their
         quietest second, a foot in the flat of a slow stance does not.
     """
 
@@ -76,7 +76,7 @@ def find_offsets(sensor: Sensor, acc: Floats, gyr: Floats, params: StandingParam
     orientation filter still estimates it), and the accelerometer's is taken from the quietest second.
 
     Source: İkizoğlu et al. 2018, §3.2 (mean over 2–3 s). Deviations: (1) the offset is taken in the sensor's frame,
-    where it is constant, not in the world's; (2) gravity's size is part of it: of 92 real sensors 46 read more than
+    where it is constant, not in the world's; (2) gravity's size is part of it: of 92 real sensors 48 read more than
     10.0 m/s² at rest; (3) the gyroscope's offset is removed as well; (4) the second is searched for.
     """
     start, end, standing = find_standing(acc, gyr, sensor.rate_hz, params)
@@ -85,4 +85,5 @@ def find_offsets(sensor: Sensor, acc: Floats, gyr: Floats, params: StandingParam
     acc_offset = mean_acc * (1.0 - STANDARD_GRAVITY_MPS2 / size) if size > 0 else np.zeros(3)
     gyr_offset = gyr[start:end].mean(axis=0) if standing else np.zeros(3)
     a, g = acc_offset.tolist(), gyr_offset.tolist()
-    return Offsets(start, end, (a[0], a[1], a[2]), (g[0], g[1], g[2]), standing, size)
+    as_in_paper = start == round((params or StandingParams()).preferred_start_s * sensor.rate_hz)
+    return Offsets(start, end, (a[0], a[1], a[2]), (g[0], g[1], g[2]), standing, size, as_in_paper)

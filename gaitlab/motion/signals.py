@@ -14,13 +14,10 @@ from gaitlab.recording.model import Floats, Sensor
 
 @dataclass(frozen=True, eq=False)
 class Signals:
-    """Specific force (n, 3), m/s², and angular rate (n, 3), rad/s, in the sensor's frame; which of them were
-    derived."""
+    """Specific force (n, 3), m/s², and angular rate (n, 3), rad/s, in the sensor's frame."""
 
     acc_mps2: Floats
     gyr_radps: Floats
-    acc_derived: bool = False
-    gyr_derived: bool = False
 
 
 def signals_of(sensor: Sensor) -> Signals:
@@ -51,4 +48,4 @@ def signals_of(sensor: Sensor) -> Signals:
             )
         force = sensor.free_acc_mps2 + np.array([0.0, 0.0, STANDARD_GRAVITY_MPS2])
         acc = rotate(conjugate(sensor.attitude), force)
-    return Signals(acc, gyr, sensor.acc_mps2 is None, sensor.gyr_radps is None)
+    return Signals(acc, gyr)

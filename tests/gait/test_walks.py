@@ -173,3 +173,92 @@ def test_a_left_knee_alone_leaves_the_right_one_not_determinable() -> None:
     analysis = analyze(without(out_and_back().recording, Placement.RIGHT_KNEE))
     assert _parameter(analysis, "knee_sway", "right").status == "not_determinable"
     assert _parameter(analysis, "knee_sway", "left").value is not None
+
+
+def _analysed(plan: Plan, course_m: float | None = None, **options: object) -> Analysis:
+    walk = simulate(plan, TYPICAL_MTW, knees=False, sampling="mean", **options)  # type: ignore[arg-type]
+    return analyze(walk.recording, Settings(course_m=course_m))
+
+
+def test_a_stop_changes_neither_stride_time_nor_stride_length_nor_speed() -> None:
+    plan = Plan((Stand(3.0), Walk(6.0), Stand(2.5), Walk(6.0), Stand(2.0)))
+    analysis = _analysed(plan)
+    assert _value(analysis, "stride_time") == pytest.approx(1.08, abs=0.02)
+    assert _value(analysis, "stride_length") == pytest.approx(6.0 / 4.5, abs=0.03)
+    assert len(analysis.result.walk.straights) == 2
+
+
+def test_a_step_to_the_line_before_the_walk_is_not_in_its_time() -> None:
+    plain = _value(_analysed(Plan((Stand(4.0), Walk(10.0), Stand(2.0))), 7.62), "walk_time")
+    stepped = _value(
+        _analysed(Plan((Stand(4.0), Walk(0.6), Stand(5.0), Walk(10.0), Stand(2.0))), 7.62), "walk_time"
+    )
+    assert stepped == pytest.approx(plain, abs=0.3)
+
+
+def test_a_turn_on_the_spot_before_the_walk_does_not_hide_it() -> None:
+    plan = Plan((Stand(4.0), Turn(np.pi), Stand(3.0), Walk(10.0), Stand(2.0)))
+    assert _value(_analysed(plan, 7.62), "walk_time") == pytest.approx(6.2, abs=0.4)
+
+
+def test_one_foot_alone_does_not_tell_who_started() -> None:
+    recording = without(out_and_back().recording, Placement.RIGHT_FOOT, Placement.RIGHT_KNEE)
+    time = _parameter(analyze(recording, Settings(course_m=7.62)), "walk_time")
+    assert time.status == "attention"
+    assert time.sd is not None
+    assert time.sd > 0.2
+
+
+def test_a_foot_that_makes_no_stride_is_said_and_stops_nothing() -> None:
+    sensors = out_and_back().recording.sensors
+    still = cut(sensors[Placement.RIGHT_FOOT], 0, 300)
+    recording = Recording({Placement.LEFT_FOOT: sensors[Placement.LEFT_FOOT], Placement.RIGHT_FOOT: still})
+    result = analyze(recording, Settings(course_m=7.62)).result
+    assert "foot_without_stride" in [warning.code for warning in result.warnings]
+    assert "right" not in result.walk.closing_error_m
+    step = result.parameter("step_length", "both")
+    assert step is not None
+    assert step.status == "not_determinable"
+
+
+def test_a_foot_that_is_recorded_late_is_not_joined_to_the_other() -> None:
+    sensors = out_and_back().recording.sensors
+    right = sensors[Placement.RIGHT_FOOT]
+    late = cut(right, 900, right.n_samples)
+    analysis = analyze(
+        Recording({Placement.LEFT_FOOT: sensors[Placement.LEFT_FOOT], Placement.RIGHT_FOOT: late})
+    )
+    for name in ("step_length", "step_width", "path_deviation"):
+        assert _parameter(analysis, name).status == "not_determinable"
+    assert "partly_recorded" in [warning.code for warning in analysis.result.warnings]
+
+
+def test_three_seconds_that_were_lost_leave_nothing_ok_that_rests_on_them() -> None:
+    sensors = out_and_back().recording.sensors
+    left = sensors[Placement.LEFT_FOOT]
+    received = left.received.copy()
+    received[700:1000] = False
+    lossy = replace(left, received=received)
+    recording = Recording({Placement.LEFT_FOOT: lossy, Placement.RIGHT_FOOT: sensors[Placement.RIGHT_FOOT]})
+    distance = _parameter(analyze(recording), "traversed_distance", "left")
+    assert distance.sd is not None
+    assert distance.sd > 0.5
+
+
+def test_a_knees_troubles_mark_no_parameter_of_the_feet() -> None:
+    sensors = dict(out_and_back().recording.sensors)
+    sensors[Placement.LEFT_KNEE] = cut(sensors[Placement.LEFT_KNEE], 700, 1500)
+    analysis = analyze(Recording(sensors), Settings(course_m=7.62))
+    assert _parameter(analysis, "stride_length", "left").status == "ok"
+
+
+def test_standing_is_in_no_stride() -> None:
+    for foot in analysed().result.feet.values():
+        assert max(stride.duration_s for stride in foot.strides) < 2.0
+
+
+def test_stance_and_double_support_are_those_of_the_plan_within_their_intervals() -> None:
+    for name, truth in (("stance_share", 62.0), ("double_support_share", 24.0)):
+        parameter = _parameter(analysed(), name)
+        assert parameter.ci95 is not None
+        assert parameter.ci95[0] - 1.0 <= truth <= parameter.ci95[1] + 1.0
