@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import argparse
 import datetime as dt
+import os
 import sys
 from pathlib import Path
 
 from gaitlab.analysis import Analysis, Settings, analyze
-from gaitlab.cli.files import write_file
+from gaitlab.cli.files import write_files
 from gaitlab.cli.parser import PLACEMENTS
 from gaitlab.cli.table import print_result
 from gaitlab.errors import InputError
@@ -24,8 +25,7 @@ def run(chosen: argparse.Namespace) -> int:
     recording = read_recording(*chosen.paths, placements=named or None, rate_hz=chosen.rate)
     analysis = analyze(recording, Settings(method=chosen.method, course_m=chosen.course))
     outputs = _outputs(chosen, analysis)
-    for path, content in outputs.items():
-        write_file(path, content)
+    write_files(outputs, [*chosen.paths, *named.values()])
     if chosen.out == "-":
         sys.stdout.write(analysis.result.to_json())
     else:
@@ -38,10 +38,11 @@ def run(chosen: argparse.Namespace) -> int:
 def _outputs(chosen: argparse.Namespace, analysis: Analysis) -> dict[Path, bytes]:
     """Contents to write, by path."""
     outputs: dict[Path, bytes] = {}
+    _refuse_twice(chosen)
     if chosen.out not in (None, "-"):
         outputs[Path(chosen.out)] = analysis.result.to_json().encode()
     if chosen.series is not None:
-        if chosen.series.exists() and not chosen.series.is_dir():
+        if os.path.exists(chosen.series) and not os.path.isdir(chosen.series):  # noqa: PTH110, PTH112 never raise
             raise InputError("not_a_folder", f"{chosen.series} is not a folder.", "Give --series a folder.")
         for placement, series in analysis.series.items():
             outputs[chosen.series / f"{placement}.csv"] = to_csv(series).encode()
@@ -55,3 +56,13 @@ def _outputs(chosen: argparse.Namespace, analysis: Analysis) -> dict[Path, bytes
             pdf = path.suffix.lower() == ".pdf"
             outputs[path] = report_pdf(report) if pdf else report_html(report).encode()
     return outputs
+
+
+def _refuse_twice(chosen: argparse.Namespace) -> None:
+    """One path given for two outputs would be one key in the table of outputs."""
+    given = [*chosen.report, *([Path(chosen.out)] if chosen.out not in (None, "-") else [])]
+    for path in given:
+        if given.count(path) > 1:
+            raise InputError(
+                "output_twice", f"{path} is given for two outputs.", "Give each output its own name."
+            )

@@ -8,7 +8,7 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
-from gaitlab.cli.files import write_file
+from gaitlab.cli.files import cannot_write, write_files
 from gaitlab.cli.table import print_result
 from gaitlab.clinic import accounts, patients, reports, sessions
 from gaitlab.clinic.clinic import Clinic
@@ -29,7 +29,10 @@ def run(chosen: argparse.Namespace) -> int:
     """Make the example and say where everything is."""
     began = time.perf_counter()
     folder: Path = chosen.dir
-    write_mtmanager(example_walk(), folder / "recording")
+    try:
+        write_mtmanager(example_walk(), folder / "recording")
+    except OSError as error:
+        raise cannot_write(Path(error.filename or folder), error) from error
     files = dict(place_files(load([folder / "recording"])).files)
     settings = replace(ClinicSettings.from_environment({}), data_dir=folder / "gaitlab-data")
     clinic = Clinic.open(settings)
@@ -44,8 +47,7 @@ def run(chosen: argparse.Namespace) -> int:
             }
     finally:
         clinic.close()
-    for path, content in outputs.items():
-        write_file(path, content)
+    write_files(outputs)
     print("Example: a simulated timed 25-foot walk, sensors on both feet and knees.")
     print_result(session.trials[0].result)
     print(f"\nDone in {time.perf_counter() - began:.1f} s:")

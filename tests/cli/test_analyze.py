@@ -120,3 +120,22 @@ def test_every_trial_of_the_real_walks_is_exit_0(data_dir: Path, capsys: pytest.
         feet = [str(path.with_name(f"{path.stem}_{suffix}.txt")) for suffix in ("lf", "rf")]
         assert main(["analyze", *feet, "--out", "-"]) == 0, path.stem
         assert json.loads(capsys.readouterr().out)["feet"]["left"]["distance_m"] > 15
+
+
+def test_one_path_for_two_outputs_is_refused(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = str(tmp_path / "r.html")
+    assert main(["analyze", str(folder), "--out", out, "--report", out]) == 1
+    assert "two outputs" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_demo_that_cannot_be_written_is_a_message(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "file").write_text("")
+    assert main(["demo", "--dir", str(tmp_path / "file")]) == 1
+    printed = capsys.readouterr()
+    assert "cannot be written" in printed.err
+    assert printed.err.count("\n") == 1
