@@ -94,6 +94,8 @@ def problem_of(error: Exception) -> Problem:
         return _of_validation(error.errors())
     if isinstance(error, HTTPException):
         code, detail, hint = _HTTP_WORDS.get(error.status_code, ("refused", "The request was refused.", ""))
+        if error.status_code == 413 and error.detail != HTTPStatus(413).phrase:
+            detail = error.detail
         return _problem(error.status_code, code, detail, hint)
     return _problem(
         500,

@@ -9,11 +9,10 @@ from fastapi import FastAPI
 from fastapi.routing import APIRoute, iter_route_contexts
 from starlette.concurrency import run_in_threadpool
 from starlette.datastructures import FormData
-from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import Response
-from starlette.types import Message, Receive
 
+from api.body import Body, read_form
 from api.call import Call, form_token, trace_of
 from api.errors import RequestRefused, UnsupportedBody
 from api.origin import SAFE_METHODS, TOKEN_FIELD, TOKEN_HEADER, check_form_token, check_same_origin
@@ -21,11 +20,10 @@ from api.policy import Credential, Policy, policy_of
 from api.settings import WebSettings
 from gaitlab.clinic import accounts
 from gaitlab.clinic.access import Principal
+from gaitlab.clinic.audit import record_refusal
 from gaitlab.clinic.clinic import Clinic
 from gaitlab.errors import Misconfigured, NotAllowed, NotLoggedIn
 
-MAX_FILES = 64
-MAX_FIELDS = 256
 MULTIPART_OVERHEAD_BYTES = 1024 * 1024
 Handler = Callable[[Request], Coroutine[Any, Any, Response]]
 
@@ -45,9 +43,10 @@ class GuardedRoute(APIRoute):
             trace_of(request).route = template
             if policy is None:
                 raise _without_policy([template])
-            request = Request(request.scope, _limited(request, policy))
+            body = Body(request.receive, request.headers.get("content-length", ""), _limit(request, policy))
+            request = Request(request.scope, body.receive)
             try:
-                request.state.call = await _let_in(request, policy)
+                request.state.call = await _let_in(request, policy, body)
                 trace_of(request).cleared = True
                 return await run(request)
             finally:
@@ -56,27 +55,35 @@ class GuardedRoute(APIRoute):
         return guarded
 
 
-async def _let_in(request: Request, policy: Policy) -> Call:
+async def _let_in(request: Request, policy: Policy, body: Body) -> Call:
     clinic: Clinic = request.app.state.clinic
     web: WebSettings = request.app.state.web
     secret, bearer = request.cookies.get(web.cookie_name, ""), _bearer(request)
     _check_envelope(request, secret, bearer)
     unsafe = request.method not in SAFE_METHODS
-    if unsafe and policy.credentials != {Credential.BEARER}:
-        check_same_origin(request)
-    caller = None if policy.is_open else await run_in_threadpool(_recognise, clinic, policy, secret, bearer)
-    if caller is not None:
-        trace_of(request).principal = caller.user_id
-        _check_permission(caller, policy)
-    form = await _form(request) if unsafe else FormData()
-    if unsafe and caller is not None and not bearer:
-        given = request.headers.get(TOKEN_HEADER) or str(form.get(TOKEN_FIELD, ""))
-        check_form_token(form_token(clinic.form_key(), secret), given)
+    caller: Principal | None = None
+    form = FormData()
+    try:
+        if unsafe and policy.credentials != {Credential.BEARER}:
+            check_same_origin(request)
+        caller = (
+            None if policy.is_open else await run_in_threadpool(_recognise, clinic, policy, secret, bearer)
+        )
+        if caller is not None:
+            trace_of(request).principal = caller.user_id
+            _check_permission(caller, policy)
+        form = await read_form(request, body, only_forms=policy.upload) if unsafe else form
+        if unsafe and caller is not None and not bearer:
+            given = request.headers.get(TOKEN_HEADER) or str(form.get(TOKEN_FIELD, ""))
+            check_form_token(form_token(clinic.form_key(), secret), given)
+    except NotAllowed as refusal:
+        await run_in_threadpool(_note, request, policy, refusal, caller, secret, bearer)
+        raise
     return Call(
         clinic=clinic,
         web=web,
         request_id=trace_of(request).request_id,
-        address=request.client.host if request.client else "",
+        address=_address(request),
         caller=caller,
         session_secret="" if bearer or caller is None else secret,
         form=form,
@@ -100,6 +107,31 @@ def _recognise(clinic: Clinic, policy: Policy, secret: str, bearer: str) -> Prin
     raise NotLoggedIn(
         "not_logged_in", "You are not logged in, or were logged out after a while.", "Log in again."
     )
+
+
+def _note(
+    request: Request, policy: Policy, refusal: NotAllowed, caller: Principal | None, secret: str, bearer: str
+) -> None:
+    """Put the refusal of a known caller into the audit trail; what nobody in particular tried is in the log."""
+    clinic: Clinic = request.app.state.clinic
+    if caller is None and not policy.is_open:
+        try:
+            caller = _recognise(clinic, policy, secret, bearer)
+        except NotLoggedIn:
+            return
+    if caller is not None:
+        record_refusal(
+            clinic,
+            caller,
+            policy.permission,
+            code=refusal.code,
+            request_id=trace_of(request).request_id,
+            address=_address(request),
+        )
+
+
+def _address(request: Request) -> str:
+    return request.client.host if request.client else ""
 
 
 def _check_permission(caller: Principal, policy: Policy) -> None:
@@ -131,35 +163,11 @@ def _bearer(request: Request) -> str:
     return value.strip() if scheme.lower() == "bearer" else ""
 
 
-async def _form(request: Request) -> FormData:
-    """Read the body of a form; the request keeps it, so nobody reads it twice."""
-    kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
-    if kind not in ("multipart/form-data", "application/x-www-form-urlencoded"):
-        return FormData()
-    return await request.form(max_files=MAX_FILES, max_fields=MAX_FIELDS)
-
-
-def _limited(request: Request, policy: Policy) -> Receive:
-    """Count the body as it comes and stop at the limit; a declared length is believed only to refuse."""
+def _limit(request: Request, policy: Policy) -> int:
     clinic: Clinic = request.app.state.clinic
     web: WebSettings = request.app.state.web
     upload = clinic.settings.max_upload_bytes + MULTIPART_OVERHEAD_BYTES
-    limit = upload if policy.upload else web.small_body_bytes
-    declared = request.headers.get("content-length", "")
-    receive = request.receive
-    seen = 0
-
-    async def counted() -> Message:
-        nonlocal seen
-        if declared.isdigit() and int(declared) > limit:
-            raise HTTPException(413)
-        message = await receive()
-        seen += len(message.get("body", b""))
-        if seen > limit:
-            raise HTTPException(413)
-        return message
-
-    return counted
+    return upload if policy.upload else web.small_body_bytes
 
 
 def audit(app: FastAPI) -> None:

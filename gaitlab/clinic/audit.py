@@ -31,11 +31,17 @@ def list_events(
 
 
 def record_refusal(
-    clinic: Clinic, principal: Principal, permission: Permission, *, request_id: str = "", address: str = ""
+    clinic: Clinic,
+    principal: Principal,
+    permission: Permission | None,
+    *,
+    code: str = "not_allowed",
+    request_id: str = "",
+    address: str = "",
 ) -> None:
-    """Note that a caller was turned away before reaching a desk, for want of a permission."""
+    """Note that a caller was turned away before reaching a desk: for want of a permission, or for ``code``."""
     actor = actor_of(principal, request_id=request_id, address=address)
-    details = {"code": "not_allowed", "permission": permission.value}
+    details = {"code": code, **({"permission": permission.value} if permission is not None else {})}
     with clinic.database.writing() as db:
         clinic.record(db, actor, [audit.Event("desk.enter", details=details, outcome="refused")])
 

@@ -20,6 +20,7 @@ from api.guard import GuardedRoute
 from api.middleware import Envelope
 from api.policy import open_to_all, person, policy_of
 from api.settings import WebSettings
+from gaitlab.clinic import audit
 from gaitlab.clinic.access import Permission
 from gaitlab.errors import Misconfigured
 from tests.api.visitors import HOST, House, Program, open_house
@@ -318,3 +319,27 @@ def test_a_revoked_and_an_unknown_token_are_refused_alike(house: House) -> None:
     assert {answer.status_code for answer in answers} == {401}
     assert len({answer.json()["detail"] for answer in answers}) == 1
     assert answers[0].headers["www-authenticate"] == "Bearer"
+
+
+def test_what_the_guard_refuses_a_known_caller_is_in_the_trail(house: House) -> None:
+    bob = house.browser(house.bob)
+    assert bob.get("/patients/new").status_code == 403
+    assert bob.post("/logout", headers={"Sec-Fetch-Site": "cross-site"}).status_code == 403
+    assert bob.post("/logout", {"form_token": "another"}).status_code == 403
+    scoped = house.program(house.alice, [Permission.PATIENT_READ])
+    assert scoped.post("/api/v1/patients", json={"code": "P-9"}).status_code == 403
+    with house.clinic.desk(house.ada) as desk:
+        events = audit.list_events(desk).items
+    refused = [(one.actor, one.details) for one in events if one.outcome == "refused"]
+    assert refused[::-1] == [
+        ("Bob", {"code": "not_allowed", "permission": "patient:write"}),
+        ("Bob", {"code": "cross_site"}),
+        ("Bob", {"code": "form_token"}),
+        ("Alice", {"code": "not_allowed", "permission": "patient:write"}),
+    ]
+
+
+def test_a_body_over_the_limit_is_told_the_limit(house: House) -> None:
+    answer = house.program(house.alice).post("/api/v1/patients", content=b"x" * 2_000_000)
+    assert answer.status_code == 413
+    assert "iB" in answer.json()["detail"]
