@@ -109,6 +109,7 @@ def place(
         )
     unpacked = expand(files)
     wanted = dict(chosen or {})
+    _check_chosen(wanted)
     if any(wanted.get(file.name, "") not in {*Placement, NOT_USED} for file in unpacked):
         inspected = inspect_upload(desk, unpacked)
         open_ones = [one for one in inspected if not (one.placement or one.left_out or wanted.get(one.name))]
@@ -116,6 +117,18 @@ def place(
             raise PlacementsUnknownError(inspected)
         wanted = {one.name: wanted.get(one.name) or one.placement or NOT_USED for one in inspected}
     return _one_each(unpacked, wanted)
+
+
+def _check_chosen(chosen: Mapping[str, str]) -> None:
+    for name, placement in chosen.items():
+        if placement not in {*Placement, NOT_USED, ""}:
+            raise InputError(
+                "invalid_field",
+                "There is no such placement.",
+                "Choose the left or right foot or knee, or leave the file out.",
+                file=name,
+                column="placed_as",
+            )
 
 
 def _one_each(files: Sequence[InputFile], wanted: Mapping[str, str]) -> dict[Placement, InputFile]:

@@ -44,7 +44,8 @@ def typed(form: FormData, names: tuple[str, ...], *, never_kept: tuple[str, ...]
 
 def decimal(text: str) -> str | None:
     """A number as typed, with a decimal point or comma; None where the field is empty."""
-    return text.replace(",", ".").replace("−", "-") or None
+    # Python's own digit groups (1_70) are no way in which people write numbers.
+    return text.replace(",", ".").replace("−", "-").replace("_", "?") or None
 
 
 def check(model: type[Model], data: Mapping[str, Any]) -> tuple[Model | None, dict[str, str]]:

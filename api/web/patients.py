@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from decimal import Decimal, InvalidOperation
+import re
+from decimal import Decimal
 from typing import Annotated
 
 from fastapi import APIRouter, Query
@@ -24,6 +25,8 @@ router = APIRouter(include_in_schema=False, route_class=GuardedRoute)
 
 PER_PAGE = 25
 FIELDS = ("code", "sex", "birth_year", "height_cm", "weight_kg", "leg_length_cm", "diagnosis", "note")
+_PLAIN_NUMBER = r"[+-]?[0-9]{1,8}(\.[0-9]{0,8})?"
+_VERSION = r"[0-9]{1,9}"
 _IN_CENTIMETRES = {"height_cm": "height_m", "leg_length_cm": "leg_length_m"}
 
 
@@ -96,8 +99,8 @@ def edit(patient_id: Id, call: CurrentCall) -> Response:
     form = typed(call.form, (*FIELDS, "version"))
     checked, errors = _read(form)
     if checked is not None:
-        version = int(form.value("version")) if form.value("version").isdecimal() else None
         try:
+            version = _version(form.value("version"))
             with call.desk() as desk:
                 patients.edit_patient(desk, patient_id, checked, version=version)
             return go(f"/patients/{patient_id}")
@@ -134,10 +137,20 @@ def _read(form: Typed) -> tuple[PatientForm | None, dict[str, str]]:
 
 def _metres(text: str) -> str | None:
     number = decimal(text)
-    try:
-        return None if number is None else str(Decimal(number) / 100)
-    except InvalidOperation:
-        return number
+    if number is None:
+        return None
+    return str(Decimal(number) / 100) if re.fullmatch(_PLAIN_NUMBER, number) else "no number"
+
+
+def _version(text: str) -> int:
+    """The version that was on the page; without it nobody could tell whether somebody was faster."""
+    if not re.fullmatch(_VERSION, text):
+        raise Conflict(
+            "version_missing",
+            "The form does not say which version of the record it was filled in on.",
+            "Reload the page and make the change again.",
+        )
+    return int(text)
 
 
 def _as_typed(patient: PatientView) -> dict[str, str]:

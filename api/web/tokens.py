@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from fastapi import APIRouter
 from starlette.responses import Response
 
@@ -41,7 +43,7 @@ def add(call: CurrentCall) -> Response:
     form = typed(call.form, ("name", "days"), never_kept=("scopes",))
     scopes = [str(scope) for scope in call.form.getlist("scopes")]
     try:
-        if not form.value("days").isdecimal():
+        if not re.fullmatch(r"[0-9]{1,4}", form.value("days")):
             raise InputError("invalid_field", "This must be a whole number of days.", column="days")
         if any(scope not in SCOPES for scope in scopes):
             raise InputError("invalid_field", "There is no such permission.", column="scopes")

@@ -153,6 +153,7 @@ def test_a_token_is_shown_once_works_and_is_revoked(house: House) -> None:
         ({"days": "0"}, "#days-error"),
         ({"days": "366"}, "#days-error"),
         ({"days": "many"}, "#days-error"),
+        ({"days": "9" * 5000}, "#days-error"),
         ({"scopes": []}, "#scopes-error"),
         ({"scopes": ["token:manage"]}, "#scopes-error"),
         ({"scopes": ["everything"]}, "#scopes-error"),

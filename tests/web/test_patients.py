@@ -56,6 +56,10 @@ def test_the_edit_form_shows_what_was_typed_and_changes_it(house: House) -> None
         ({"birth_year": "long ago"}, "birth_year"),
         ({"height_cm": "1.68"}, "height_cm"),
         ({"height_cm": "tall"}, "height_cm"),
+        ({"height_cm": "1e999999999"}, "height_cm"),
+        ({"height_cm": "1_70"}, "height_cm"),
+        ({"height_cm": "1e0"}, "height_cm"),
+        ({"weight_kg": "7_0"}, "weight_kg"),
         ({"weight_kg": "1"}, "weight_kg"),
         ({"weight_kg": "nan"}, "weight_kg"),
         ({"leg_length_cm": "860"}, "leg_length_cm"),
@@ -101,6 +105,15 @@ def test_a_change_on_an_old_version_is_said_and_what_was_typed_is_kept(house: Ho
     assert soup(late).select_one(".notice.bad") is not None
     assert "I was slower" in late.text
     assert "somebody was faster" in browser.get(path).text
+
+
+@pytest.mark.parametrize("version", ["", "none", "-1", "9" * 5000])
+def test_a_change_without_a_version_is_refused_and_never_skips_the_check(house: House, version: str) -> None:
+    browser = house.browser(house.alice)
+    path = browser.post("/patients/new", FULL).headers["location"]
+    answer = browser.post(f"{path}/edit", {**FULL, "version": version, "note": "unchecked"})
+    assert answer.status_code == 409
+    assert "unchecked" not in browser.get(path).text
 
 
 def test_the_list_can_be_searched_and_turned(house: House) -> None:
