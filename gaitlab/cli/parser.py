@@ -53,11 +53,13 @@ def _analyze(commands: Commands) -> None:
         " file names, headers or a placement.json.",
     )
     command.add_argument(
-        "paths", nargs="*", metavar="PATH", help="a folder, a zip, or the files of one recording"
+        "paths", type=_path, nargs="*", metavar="PATH", help="a folder, a zip, or the files of one recording"
     )
     for placement in PLACEMENTS:
         option = f"--{placement.replace('_', '-')}"
-        command.add_argument(option, metavar="FILE", help=f"file of the {placement.replace('_', ' ')}")
+        command.add_argument(
+            option, type=_path, metavar="FILE", help=f"file of the {placement.replace('_', ' ')}"
+        )
     command.add_argument(
         "--rate", type=_positive, metavar="HZ", help="sampling rate, where the files do not tell it"
     )
@@ -66,10 +68,10 @@ def _analyze(commands: Commands) -> None:
     )
     command.add_argument("--method", choices=METHODS, default=METHODS[0], help="default: %(default)s")
     command.add_argument(
-        "--out", metavar="result.json", help="write the result as JSON; - for standard output"
+        "--out", type=_path, metavar="result.json", help="write the result as JSON; - for standard output"
     )
     command.add_argument(
-        "--series", type=Path, metavar="DIR", help="write the time series as CSV files into DIR"
+        "--series", type=_folder, metavar="DIR", help="write the time series as CSV files into DIR"
     )
     command.add_argument(
         "--report",
@@ -89,7 +91,9 @@ def _doctor(commands: Commands) -> None:
         description="Tell what each file is: format, rate, clock, gaps, losses, saturation, units, missing columns, and what"
         " each means for a result. Exit status 1 if any of them cannot be used.",
     )
-    command.add_argument("files", nargs="+", metavar="FILE", help="a recording's file, a folder or a zip")
+    command.add_argument(
+        "files", type=_path, nargs="+", metavar="FILE", help="a recording's file, a folder or a zip"
+    )
     command.add_argument(
         "--rate", type=_positive, metavar="HZ", help="sampling rate, where the file does not tell it"
     )
@@ -105,7 +109,7 @@ def _demo(commands: Commands) -> None:
         " store them, and write report.html, report.pdf and result.json.",
     )
     command.add_argument(
-        "--dir", type=Path, default=Path("gaitlab-demo"), help="where to put it all (default: %(default)s)"
+        "--dir", type=_folder, default=Path("gaitlab-demo"), help="where to put it all (default: %(default)s)"
     )
     command.add_argument("--serve", action="store_true", help="then serve the pages on this machine")
     command.add_argument("--port", type=_port, default=8000, help="default: %(default)s")
@@ -157,7 +161,7 @@ def _token(commands: Commands) -> None:
         "--scope", action="append", help="permission such as session:write; default: all that REST needs"
     )
     add.add_argument(
-        "--days", type=int, default=90, help="until it expires (default: %(default)s, at most 365)"
+        "--days", type=_days, default=90, help="until it expires (default: %(default)s, at most 365)"
     )
     add.set_defaults(run=_late("admin", "token_add"))
     actions.add_parser("list", help="list the tokens").set_defaults(run=_late("admin", "token_list"))
@@ -186,6 +190,22 @@ def _audit(commands: Commands) -> None:
     )
 
 
+def _path(text: str) -> str:
+    if not text.strip():
+        raise argparse.ArgumentTypeError("the path is empty")
+    return text
+
+
+def _folder(text: str) -> Path:
+    return Path(_path(text))
+
+
+def _days(text: str) -> int:
+    if not (text.isdecimal() and len(text) <= 6):
+        raise argparse.ArgumentTypeError(f"{text} is not a number of days")
+    return int(text)
+
+
 def _positive(text: str) -> float:
     try:
         value = float(text)
@@ -197,7 +217,7 @@ def _positive(text: str) -> float:
 
 
 def _port(text: str) -> int:
-    value = int(text) if text.isdecimal() else 0
+    value = int(text) if text.isdecimal() and len(text) <= 5 else 0
     if not 1 <= value <= 65535:
         raise argparse.ArgumentTypeError(f"{text} is not a port from 1 to 65535")
     return value

@@ -40,7 +40,7 @@ def unpack(archive: InputFile, limits: Limits) -> list[InputFile]:
     ------
     InputError
         ``zip_broken``, ``zip_path`` (a name that leads out of the archive, a link), ``zip_encrypted``,
-        ``zip_nested``, ``zip_method``, ``zip_duplicate``.
+        ``zip_nested``, ``zip_method``, ``zip_duplicate``, ``zip_empty``.
     TooLarge
         ``zip_entries``, ``zip_bomb`` (declared or real size, ratio, overlapping entries).
     """
@@ -50,6 +50,8 @@ def unpack(archive: InputFile, limits: Limits) -> list[InputFile]:
             entries = opened.infolist()
             _check_entries(archive, entries, limits)
             wanted = [entry for entry in entries if not entry.is_dir() and not _is_clutter(entry.filename)]
+            if not wanted:
+                raise _refuse(archive, "zip_empty", "The zip holds no file.", "Pack the files of one trial.")
             return _extract(archive, opened, wanted, limits)
     except _BROKEN as error:
         raise _refuse(

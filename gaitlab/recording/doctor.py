@@ -16,6 +16,7 @@ from gaitlab.recording.rates import Rate, assumed_rate, check_rate, decide_rate
 from gaitlab.recording.reading import to_sensor
 from gaitlab.recording.samples import Rates, Samples
 from gaitlab.recording.units import unit_evidence
+from gaitlab.recording.useless import use_findings
 
 _SHOWN_GAPS = 8
 _MISSING = {
@@ -107,12 +108,10 @@ def examine(file: InputFile, rate_hz: float | None = None) -> FileReport:
         check_rate(rate_hz)
     try:
         samples = read_samples(file)
-        rate = decide_rate(samples.rates, rate_hz) or assumed_rate()
+        rate = decide_rate(samples.rates, rate_hz) or assumed_rate(refused_hz=samples.rates.refused_hz)
         sensor = to_sensor(Placement.LEFT_FOOT, samples, rate)
     except InputError as error:
-        problem = Problem(error.code, error.message, error.hint, error.line, error.column)
-        size = len(file.content)
-        return FileReport(file.name, file.sha256, size, device=device_of(file), problem=problem)
+        return unusable(file, error)
     gaps = tuple(find_gaps(samples.packet))
     longest = max((gap.n_lost for gap in gaps), default=0)
     return FileReport(
@@ -127,8 +126,19 @@ def examine(file: InputFile, rate_hz: float | None = None) -> FileReport:
         n_saturated=sensor.n_saturated,
         quantities=_quantities(samples),
         units=unit_evidence(samples),
-        findings=(*rate.findings, *samples.findings, *clock_findings(samples, sensor)),
+        findings=(
+            *rate.findings,
+            *samples.findings,
+            *clock_findings(samples, sensor),
+            *use_findings(samples, rate.hz),
+        ),
     )
+
+
+def unusable(file: InputFile, error: InputError) -> FileReport:
+    """The report on a file that cannot be used, such as a zip that cannot be unpacked."""
+    problem = Problem(error.code, error.message, error.hint, error.line, error.column)
+    return FileReport(file.name, file.sha256, len(file.content), device=device_of(file), problem=problem)
 
 
 def to_dict(report: FileReport) -> dict[str, Any]:
@@ -204,17 +214,21 @@ def _clock_lines(report: FileReport) -> list[str]:
         "user": "as given by you",
         "header": "from the header",
         "stamps": "from the device's time stamps",
-        "assumed": "ASSUMED: the file does not say it",
+        "assumed": "ASSUMED: the file does not say it, or not rightly",
     }[clock.rate_origin]
     if clock.rate_origin == "header" and clock.stamps_hz is not None:
         origin += ", confirmed by the device's time stamps"
-    wraps = f", the counter wrapped {clock.n_wraps} times (undone)" if clock.n_wraps else ""
+    wraps = f", the counter wrapped {_times(clock.n_wraps)} (undone)" if clock.n_wraps else ""
     return [
         f"Kind: {report.family}, {report.size_bytes / 1000:.0f} kB",
         f"Sensor: {report.device or 'number not stated; the placement must come from the file name or from you'}",
         f"Rate: {clock.rate_hz:g} Hz, {origin}. Every time and length rests on it.",
         f"Clock: packets {clock.first_packet} to {clock.last_packet}, {clock.duration_s:.2f} s{wraps}.",
     ]
+
+
+def _times(n: int) -> str:
+    return "once" if n == 1 else f"{n} times"
 
 
 def _loss_lines(report: FileReport) -> list[str]:
@@ -225,7 +239,7 @@ def _loss_lines(report: FileReport) -> list[str]:
     else:
         shown = ", ".join(f"{gap.start_packet} ({gap.n_lost})" for gap in losses.gaps[:_SHOWN_GAPS])
         more = f" and {losses.n_gaps - _SHOWN_GAPS} more" if losses.n_gaps > _SHOWN_GAPS else ""
-        gaps = f"{losses.n_gaps} gaps, the longest {losses.longest_s:.2f} s"
+        gaps = f"{losses.n_gaps} gap{'s' if losses.n_gaps != 1 else ''}, the longest {losses.longest_s:.2f} s"
         lost = f"{losses.n_lost} lost ({losses.share:.1%}) in {gaps}"
         lines = [
             f"Samples: {report.n_samples} received, {lost}. They are filled; strides with gaps are less certain.",

@@ -102,9 +102,14 @@ class Header:
 
     @property
     def rate_hz(self) -> float | None:
+        rate_hz = self.stated_hz
+        return rate_hz if rate_hz is not None and 1.0 <= rate_hz <= 10_000.0 else None
+
+    @property
+    def stated_hz(self) -> float | None:
+        """The number that the header gives as the rate, be it possible or not."""
         found = self._comment(_RATE)
-        rate_hz = float(found.replace(",", ".")) if found else 0.0
-        return rate_hz if 1.0 <= rate_hz <= 10_000.0 else None
+        return float(found.replace(",", ".")) if found else None
 
     @property
     def device(self) -> str | None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import stat
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
@@ -18,13 +20,13 @@ def load(paths: Iterable[Path | str], limits: Limits = LIMITS) -> list[InputFile
     Raises
     ------
     InputError
-        ``no_such_file``, ``unreadable_file``.
+        ``no_such_file``, ``not_a_file`` (a device, a pipe), ``unreadable_file``.
     TooLarge
         ``file_too_large``, ``folder_too_large``.
     """
     files: list[InputFile] = []
     for path in map(Path, paths):
-        if path.is_dir():
+        if os.path.isdir(path):  # noqa: PTH112 is_dir raises for a path too long
             files += _load_folder(path, limits)
         else:
             files.append(_load_file(path, limits))
@@ -50,11 +52,19 @@ def expand(files: Sequence[InputFile], limits: Limits = LIMITS) -> list[InputFil
 
 def _load_file(path: Path, limits: Limits) -> InputFile:
     try:
-        check_size(path.name, path.stat().st_size, limits)
+        status = path.stat()
+        if not stat.S_ISREG(status.st_mode):  # a pipe may never end
+            raise InputError(
+                "not_a_file",
+                "This is a device or a pipe, not a file.",
+                "Save the recording as a file and give its path.",
+                file=clean_name(str(path)),
+            )
+        check_size(str(path), status.st_size, limits)
         return InputFile(path.name, path.read_bytes())
     except FileNotFoundError:
         raise InputError(
-            "no_such_file", "There is no such file.", "Check the path.", file=clean_name(path.name)
+            "no_such_file", "There is no such file.", "Check the path.", file=clean_name(str(path))
         ) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or "not a file"
@@ -62,7 +72,7 @@ def _load_file(path: Path, limits: Limits) -> InputFile:
             "unreadable_file",
             f"The file cannot be read ({reason}).",
             "Check the path and the permissions.",
-            file=clean_name(path.name),
+            file=clean_name(str(path)),
         ) from None
 
 
@@ -76,13 +86,13 @@ def _load_folder(folder: Path, limits: Limits) -> list[InputFile]:
             "unreadable_file",
             f"The folder cannot be read ({error.strerror}).",
             "Check the permissions.",
-            file=clean_name(folder.name),
+            file=clean_name(str(folder)),
         ) from None
     if len(wanted) > limits.folder_files or total > limits.folder_bytes:
         raise TooLarge(
             "folder_too_large",
             f"The folder holds {len(wanted)} text files of {total / MIB:.0f} MiB together.",
             "Put the files of one trial into a folder of their own, or name them with --left-foot and so on.",
-            file=clean_name(folder.name),
+            file=clean_name(str(folder)),
         )
     return [_load_file(path, limits) for path in wanted]

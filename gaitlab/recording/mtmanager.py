@@ -139,7 +139,7 @@ def _samples(file: InputFile, columns: Columns) -> Samples:
         family=FAMILY,
         packet=packet,
         modulus=modulus,
-        rates=Rates(header.rate_hz, stamps_hz),
+        rates=Rates(header.rate_hz, stamps_hz, None if header.rate_hz else header.stated_hz),
         device=header.device or device_in_name(file.name),
         acc_mps2=columns.group(h.ACC),
         gyr_radps=columns.group(h.GYR),

@@ -45,10 +45,12 @@ def _loss_findings(lost: Packets, samples: Samples, sensor: Sensor, params: Qual
     longest = int(np.argmax(lost))
     longest_s = float(lost[longest]) / sensor.rate_hz
     if share > params.lost_share:
+        n_gaps = np.count_nonzero(lost)
+        gaps = "1 gap" if n_gaps == 1 else f"{n_gaps} gaps"
         few = share <= params.most_lost_share
         what = "strides there are less certain" if few else "hardly any result can be trusted"
         message = (
-            f"{share:.1%} of the samples were lost in {np.count_nonzero(lost)} gaps, the longest {longest_s:.2f} s;"
+            f"{share:.1%} of the samples were lost in {gaps}, the longest {longest_s:.2f} s;"
             f" they are filled, and {what}."
         )
         found.append(Finding("lost_samples", message))

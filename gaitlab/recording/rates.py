@@ -82,14 +82,16 @@ def decide_rate(rates: Rates, user_hz: float | None = None) -> Rate | None:
     return Rate(stamps_hz, "stamps") if stamps_hz else None
 
 
-def assumed_rate(other_hz: float | None = None) -> Rate:
+def assumed_rate(other_hz: float | None = None, refused_hz: float | None = None) -> Rate:
     """The rate of the recording's other sensors, else the usual 100 Hz; said either way."""
+    said = "The file does not say its rate"
+    if refused_hz is not None:
+        said = f"The file says that its rate is {refused_hz:g} Hz, which no sensor has"
     if other_hz is not None:
-        message = f"The file does not say its rate; {other_hz:g} Hz is taken from the other sensors."
+        message = f"{said}; {other_hz:g} Hz is taken from the other sensors."
         return Rate(other_hz, "assumed", (Finding("rate_assumed", message),))
     message = (
-        f"The file does not say its rate; {DEFAULT_HZ:g} Hz is assumed. If that is wrong, so is every time and "
-        "length: give the rate."
+        f"{said}; {DEFAULT_HZ:g} Hz is assumed. If that is wrong, so is every time and length: give the rate."
     )
     return Rate(DEFAULT_HZ, "assumed", (Finding("rate_assumed", message),))
 

@@ -99,7 +99,8 @@ def _rates(samples: Mapping[Placement, Samples], rate_hz: float | None) -> dict[
     known = {placement: decide_rate(one.rates, rate_hz) for placement, one in samples.items()}
     first = next(((placement, rate) for placement, rate in known.items() if rate), None)
     rates = {
-        placement: rate or assumed_rate(first[1].hz if first else None) for placement, rate in known.items()
+        placement: rate or assumed_rate(first[1].hz if first else None, samples[placement].rates.refused_hz)
+        for placement, rate in known.items()
     }
     for a, b in combinations(rates, 2):
         if not same_rate(rates[a].hz, rates[b].hz):

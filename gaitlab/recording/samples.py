@@ -23,10 +23,13 @@ class Rates:
         The header's line.
     stamps_hz : float or None
         From the device's time stamps (SampleTimeFine) over the packet counter.
+    refused_hz : float or None
+        A number in the header's line that is no rate, such as 0.
     """
 
     header_hz: float | None = None
     stamps_hz: float | None = None
+    refused_hz: float | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -104,7 +105,7 @@ def _candidates(guesses: Sequence[Guess], taken: Mapping[Placement, object]) -> 
 def _named_file(path: Path | str, files: Sequence[InputFile]) -> InputFile:
     """The file on disk, else the one of that name among those given (in a zip, say)."""
     wanted = str(path).replace("\\", "/")
-    if not Path(path).exists():
+    if not os.path.exists(path):  # noqa: PTH110 Path.exists raises for a path too long
         match = next((file for file in files if file.name == wanted), None) or _by_basename(files, wanted)
         if match is not None:
             return match
@@ -114,7 +115,7 @@ def _named_file(path: Path | str, files: Sequence[InputFile]) -> InputFile:
             "placement_unknown",
             "One sensor's file is wanted here, not a folder or an archive of several.",
             "Give the path of the file itself.",
-            file=clean_name(Path(path).name),
+            file=clean_name(str(path)),
         )
     return next((file for file in files if file.sha256 == loaded[0].sha256), loaded[0])
 
@@ -153,13 +154,24 @@ def _placement_json(files: Sequence[InputFile]) -> dict[Placement, InputFile]:
 
 def _json_object(file: InputFile) -> dict[str, object]:
     try:
-        table = json.loads(file.content.decode("utf-8-sig"))
+        table = json.loads(
+            file.content.decode("utf-8-sig"), object_pairs_hook=lambda pairs: _once(file, pairs)
+        )
     except json.JSONDecodeError as error:
         raise _bad_placement(file, f"It is not valid JSON: {error.msg}.", error.lineno) from None
     except (UnicodeDecodeError, RecursionError, ValueError):
         raise _bad_placement(file, "It is not valid JSON.") from None
     if not isinstance(table, dict):
         raise _bad_placement(file, "It holds no JSON object.")
+    return table
+
+
+def _once(file: InputFile, pairs: Sequence[tuple[str, object]]) -> dict[str, object]:
+    table: dict[str, object] = {}
+    for key, value in pairs:
+        if key in table:
+            raise _bad_placement(file, f"It names “{clean_name(key)[:40]}” twice.")
+        table[key] = value
     return table
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from gaitlab.errors import InputError
 from gaitlab.recording import InputFile
-from gaitlab.recording.doctor import describe, examine, to_dict
+from gaitlab.recording.doctor import FileReport, describe, examine, to_dict
 from tests.recording.texts import ACC, GYR, LONG_HEADER, QUATERNION, mt_text
 
 
@@ -98,3 +98,39 @@ def test_every_public_recording_is_described(data_dir: Path) -> None:
             sensor = path.suffix == ".txt"
             assert (report.problem is None) is sensor, path.name
             assert len(describe(report).splitlines()) >= 3
+
+
+def test_a_file_that_tells_nothing_of_a_walk_is_readable_but_said_so() -> None:
+    short = examine(mt_text(n=60).file)
+    assert "too_short" in codes(short)
+    stuck = mt_text(ACC, GYR, n=400)
+    for row in range(100, 251):
+        for heading in (*ACC, *GYR):
+            stuck = stuck.put(row, heading, "9.81" if heading == "Acc_Z" else "0.125")
+    found = examine(stuck.file)
+    assert codes(found) == {"sensor_stuck"}
+    assert "for 1.5 s from 1.0 s" in describe(found)
+    still = mt_text(ACC, GYR, n=400)
+    for row in range(400):
+        for heading in GYR:
+            still = still.put(row, heading, "0.0")
+    assert codes(examine(still.file)) == {"gyr_zero"}
+    assert codes(examine(mt_text(ACC, GYR, n=400).file)) == set()
+
+
+def codes(report: FileReport) -> set[str]:
+    assert report.problem is None
+    return {finding.code for finding in report.findings}
+
+
+def test_an_impossible_rate_in_the_header_is_said() -> None:
+    report = examine(replace(mt_text(n=200), comments=("Acquisition frequency: 0 Hz",)).file)
+    assert "rate is 0 Hz" in describe(report)
+    assert report.clock is not None
+    assert report.clock.rate_origin == "assumed"
+
+
+def test_one_gap_is_one_gap() -> None:
+    text = describe(examine(mt_text(n=200).keep_rows([*range(50), *range(60, 200)]).file))
+    assert "in 1 gap, the longest" in text
+    assert "1 gaps" not in text

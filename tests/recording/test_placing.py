@@ -182,6 +182,7 @@ def test_placement_json_settles_everything(tmp_path: Path, as_zip: bool) -> None
         ('{"left_foot": "c.txt"}', None, "c.txt"),
         ('{"left_foot": "../../secret.txt"}', None, "secret"),
         ("{}", None, "no file"),
+        ('{"left_foot": "a.txt", "left_foot": "b.txt"}', None, "twice"),
         ("[" * 100_000, None, "JSON"),
         ("\x00", 1, "JSON"),
     ],
