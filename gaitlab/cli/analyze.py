@@ -22,6 +22,8 @@ def run(chosen: argparse.Namespace) -> int:
     named = {Placement(name): getattr(chosen, name) for name in PLACEMENTS if getattr(chosen, name)}
     if not chosen.paths and not named:
         chosen.usage_error("give a folder, a zip or the files of a recording")
+    if chosen.out == "-" and sys.stdout is None:
+        raise InputError("cannot_write", "Standard output is closed.", "Give --out the name of a file.")
     recording = read_recording(*chosen.paths, placements=named or None, rate_hz=chosen.rate)
     analysis = analyze(recording, Settings(method=chosen.method, course_m=chosen.course))
     outputs = _outputs(chosen, analysis)

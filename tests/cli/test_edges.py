@@ -119,3 +119,11 @@ def test_an_output_that_is_full_is_one_message(tmp_path: Path) -> None:
     assert run.returncode == 1
     assert run.stderr.startswith(b"gaitlab: standard output cannot be used")
     assert run.stderr.count(b"\n") == 1
+
+
+def test_a_result_for_a_closed_standard_output_is_refused(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys, "stdout", None)
+    assert main(["analyze", str(tmp_path), "--out", "-"]) == 1
+    assert "Standard output is closed" in capsys.readouterr().err
