@@ -126,6 +126,7 @@ def _of_validation(found: Sequence[Any]) -> Problem:
 
 
 def _sentence(text: str) -> str:
+    text = text.removeprefix("Value error, ")
     return text[:1].upper() + text[1:] + ("" if text.endswith(".") else ".")
 
 

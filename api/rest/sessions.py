@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import datetime as dt
 from typing import Annotated, Final
 
 from fastapi import APIRouter, File, Form, Response, UploadFile
@@ -16,7 +15,7 @@ from api.rest.schemas import IdempotencyKey, Session, Sessions, Trial, session_o
 from gaitlab.clinic import reports, sessions
 from gaitlab.clinic.access import Permission
 from gaitlab.clinic.clinic import Desk
-from gaitlab.clinic.views import SessionForm, Test, read_form
+from gaitlab.clinic.views import SessionForm, Test, WalkDay, read_form
 from gaitlab.errors import InputError
 from gaitlab.recording.file import InputFile
 from gaitlab.recording.model import Placement
@@ -38,7 +37,7 @@ def add_session(
     patient_id: Id,
     call: CurrentCall,
     response: Response,
-    date: Annotated[dt.date, Form(description="Day of the walk.")],
+    date: Annotated[WalkDay, Form(description="Day of the walk.")],
     test: Annotated[Test, Form(description="t25fw: timed 25-foot walk; 10mwt: 10 m walk; walk: free walk.")],
     course_m: Annotated[
         float | None,

@@ -77,7 +77,18 @@ def _stated(files: Sequence[InputFile]) -> dict[str, Placement] | None:
     """Placements by file name from a ``placement.json`` among the files; None where there is none."""
     if not any(file.basename.lower() == PLACEMENT_FILE for file in files):
         return None
-    return {file.name: placement for placement, file in place_files(files).files.items()}
+    stated: dict[str, Placement] = {}
+    for placement, file in place_files(files).files.items():
+        if file.name in stated:
+            first = stated[file.name].label.capitalize()
+            raise InputError(
+                "same_content",
+                f"{first} and {placement.label} are the same file ({file.name}, {file.name}).",
+                "Give each placement its own sensor's file.",
+                file=next(one.name for one in files if one.basename.lower() == PLACEMENT_FILE),
+            )
+        stated[file.name] = placement
+    return stated
 
 
 def _inspect(

@@ -3,16 +3,29 @@
 from __future__ import annotations
 
 import datetime as dt
+import re
 import unicodedata
 from collections.abc import Mapping
 from typing import Annotated, Any, Generic, Literal, TypeVar
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidationError,
+    model_validator,
+)
 
 from gaitlab.clinic.access import Permission, Role
 from gaitlab.errors import InputError
 from gaitlab.recording.model import Placement
 from gaitlab.result import Result
+
+FIRST_DAY = dt.date(1990, 1, 1)
+"""No walk was recorded with such sensors before."""
+_DAY = re.compile(r"[0-9]{4}-[0-9]{2}-[0-9]{2}")
 
 T = TypeVar("T")
 FormT = TypeVar("FormT", bound="Form")
@@ -37,7 +50,16 @@ def _not_in_the_future(year: int) -> int:
     return year
 
 
+def _written_as_a_day(value: Any) -> Any:
+    """Without this a bare number would be taken as seconds since 1970."""
+    if isinstance(value, dt.date) or (isinstance(value, str) and _DAY.fullmatch(value.strip())):
+        return value
+    raise ValueError("must be a day, such as 2026-11-21")
+
+
 def _past_or_today(date: dt.date) -> dt.date:
+    if date < FIRST_DAY:
+        raise ValueError(f"must not be before {FIRST_DAY}")
     # The day after today in UTC has begun somewhere.
     if date > dt.datetime.now(dt.UTC).date() + dt.timedelta(days=1):
         raise ValueError("must not be in the future")
@@ -46,6 +68,7 @@ def _past_or_today(date: dt.date) -> dt.date:
 
 Line = Annotated[str, AfterValidator(_one_line)]
 Text = Annotated[str, AfterValidator(_plain_text)]
+WalkDay = Annotated[dt.date, BeforeValidator(_written_as_a_day), AfterValidator(_past_or_today)]
 Sex = Literal["female", "male", "other", "unknown"]
 Test = Literal["t25fw", "10mwt", "walk"]
 
@@ -85,7 +108,7 @@ class PatientForm(Form):
 class SessionForm(Form):
     """A session as typed in. ``course_m`` is set to the test's own length where it is left out."""
 
-    date: Annotated[dt.date, AfterValidator(_past_or_today)]
+    date: WalkDay
     test: Test
     course_m: float | None = Field(default=None, ge=1, le=1000)
     note: Text = Field(default="", max_length=2000)

@@ -123,6 +123,8 @@ def test_a_zip_whose_placements_cannot_be_told_is_said(house: House) -> None:
     [
         ({"date": "yesterday"}, "date"),
         ({"date": "2999-01-01"}, "date"),
+        ({"date": "0"}, "date"),
+        ({"date": "1800-01-01"}, "date"),
         ({"test": "marathon"}, "test"),
         ({"course_m": "0.1"}, "course_m"),
         ({"course_m": "nan"}, "course_m"),

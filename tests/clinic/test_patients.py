@@ -267,13 +267,19 @@ def test_a_course_left_out_is_the_tests_own(test: str, course_m: str | None, exp
     [
         ("date", "2999-01-01"),
         ("date", "yesterday"),
+        ("date", "0"),
+        ("date", 0),
+        ("date", "1e9"),
+        ("date", "0001-01-01"),
+        ("date", "1800-06-01"),
+        ("date", "2026-01-02T00:00"),
         ("date", ""),
         ("test", "6mwt"),
         ("course_m", "0.5"),
         ("course_m", "1001"),
     ],
 )
-def test_a_sessions_impossible_value_is_refused_by_its_field(field: str, value: str) -> None:
+def test_a_sessions_impossible_value_is_refused_by_its_field(field: str, value: object) -> None:
     with pytest.raises(InputError) as refusal:
         read_form(SessionForm, {"date": "2026-01-02", "test": "walk", field: value})
     assert refusal.value.column == field

@@ -71,6 +71,15 @@ def test_a_placement_file_in_the_zip_decides(clinic: Clinic, people: People) -> 
     assert found["placement.json"].left_out
 
 
+def test_a_placement_file_that_names_one_file_for_both_feet_is_refused(
+    clinic: Clinic, people: People
+) -> None:
+    stated = InputFile("placement.json", json.dumps({"left_foot": "a.txt", "right_foot": "a.txt"}).encode())
+    with pytest.raises(InputError, match="the same file") as refused:
+        inspect(clinic, people.alice, zipped(recorded(LEFT, "a.txt"), recorded(RIGHT, "b.txt"), stated))
+    assert (refused.value.code, refused.value.file) == ("same_content", "placement.json")
+
+
 def test_a_sensor_worn_elsewhere_is_left_out(clinic: Clinic, people: People) -> None:
     found = inspect(clinic, people.alice, short_walk()[LEFT], recorded(RIGHT, "pelvis.txt"))
     assert [(one.placement, one.left_out) for one in found] == [(LEFT, False), (None, True)]
