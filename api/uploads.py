@@ -108,6 +108,7 @@ def place(
             "no_file", "No recording was chosen.", "Choose the files of one walk, or one zip.", column="files"
         )
     unpacked = expand(files)
+    _check_names(unpacked)
     wanted = dict(chosen or {})
     _check_chosen(wanted)
     if any(wanted.get(file.name, "") not in {*Placement, NOT_USED} for file in unpacked):
@@ -117,6 +118,21 @@ def place(
             raise PlacementsUnknownError(inspected)
         wanted = {one.name: wanted.get(one.name) or one.placement or NOT_USED for one in inspected}
     return _one_each(unpacked, wanted)
+
+
+def _check_names(files: Sequence[InputFile]) -> None:
+    """Placements go by file name, so a name must stand for one file."""
+    seen: set[str] = set()
+    for file in files:
+        if file.name in seen:
+            raise InputError(
+                "same_name",
+                f"Two files are called {file.name}.",
+                "Rename one of them, or leave one out.",
+                file=file.name,
+                column="files",
+            )
+        seen.add(file.name)
 
 
 def _check_chosen(chosen: Mapping[str, str]) -> None:

@@ -19,7 +19,8 @@
   const sending = form.querySelector("[data-sending]");
   const progress = form.querySelector("[data-progress]");
   const sent = form.querySelector("[data-sent]");
-  const token = form.elements.form_token.value;
+  const token = form.elements.form_token;
+  let loggedOut = false;
   let chosen = [...input.files];
   let asked = 0;
 
@@ -40,11 +41,28 @@
     take([...event.dataTransfer.files]);
   });
 
-  function take(files) {
-    const names = new Set(files.map((file) => file.name));
-    chosen = [...chosen.filter((file) => !names.has(file.name)), ...files];
+  // The placements go by file name, so a name must stand for one file. Choosing a file again is no second file.
+  async function take(files) {
+    const twice = new Set();
+    for (const file of files) {
+      const at = chosen.findIndex((one) => one.name === file.name);
+      if (at < 0) chosen.push(file);
+      else if (sameFile(chosen[at], file) || unread(file.name)) chosen[at] = file;
+      else twice.add(file.name);
+    }
     keep();
-    inspect();
+    await inspect();
+    for (const name of twice) {
+      tell({ detail: `Two different files are called ${name}; only the first is used.`, hint: "Rename one of them and choose it again, or remove the first." });
+    }
+  }
+
+  function sameFile(a, b) {
+    return a.size === b.size && a.lastModified === b.lastModified;
+  }
+
+  function unread(name) {
+    return [...rows.children].some((one) => one.dataset.file === name && one.querySelector("select").disabled);
   }
 
   function keep() {
@@ -65,13 +83,15 @@
     for (const file of chosen) data.append("files", file);
     let answer;
     try {
+      await renew();
       const response = await fetch(area.dataset.inspect, {
         method: "POST",
         body: data,
-        headers: { Accept: "application/json", "X-Form-Token": token },
+        headers: { Accept: "application/json", "X-Form-Token": token.value },
       });
       answer = await response.json();
       if (turn !== asked) return;
+      if (ended(response.status, answer)) answer = out("then choose the files again");
       if (!response.ok) return refuse(answer, earlier);
     } catch {
       if (turn === asked) refuse({ detail: "The server cannot be reached.", hint: "Check the connection, then choose the files again." }, earlier);
@@ -174,10 +194,12 @@
   }
 
   // ---- sending --------------------------------------------------------------------------------------------------
-  form.addEventListener("submit", (event) => {
+  form.addEventListener("submit", async (event) => {
     event.preventDefault();
     if (submit.disabled) return;
+    busy(true);
     clearProblem();
+    await renew();
     const request = new XMLHttpRequest();
     request.open("POST", form.action);
     request.setRequestHeader("Accept", "application/json");
@@ -192,8 +214,9 @@
         window.location.assign(request.response.location);
         return;
       }
-      if (request.status === 401) {
-        window.location.assign(`/login?next=${encodeURIComponent(window.location.pathname)}`);
+      if (ended(request.status, request.response)) {
+        busy(false);
+        tell(out("then press the button again"));
         return;
       }
       busy(false);
@@ -203,9 +226,32 @@
       busy(false);
       tell({ detail: "The connection broke off; nothing may have been stored.", hint: "Press the button again: the same walk is never stored twice." });
     });
-    busy(true);
     request.send(new FormData(form));
   });
+
+  // The log-in has ended, or another one took its place in this browser.
+  function ended(code, problem) {
+    return code === 401 || (code === 403 && problem && problem.code === "form_token");
+  }
+
+  function out(next) {
+    loggedOut = true;
+    return { detail: "You were logged out.", hint: `Log in in another tab, ${next}. What you typed stays here.`, login: true };
+  }
+
+  // A form's token belongs to its log-in: after another log-in the page is asked for the new one.
+  async function renew() {
+    if (!loggedOut) return;
+    try {
+      const page = await (await fetch(window.location.href)).text();
+      const fresh = new DOMParser().parseFromString(page, "text/html").querySelector("[data-session-form] [name=form_token]");
+      if (!fresh) return;
+      token.value = fresh.value;
+      loggedOut = false;
+    } catch {
+      // Sending says that the server cannot be reached.
+    }
+  }
 
   window.addEventListener("pageshow", () => busy(false));
 
@@ -229,6 +275,7 @@
     notice.querySelector("[data-place]").textContent = where.filter(Boolean).join(", ");
     notice.querySelector("[data-detail]").textContent = problem.detail || "Something went wrong.";
     notice.querySelector("[data-hint]").textContent = problem.hint || "";
+    notice.querySelector("[data-way]").hidden = !problem.login;
     problemSlot.append(notice);
     const field = !problem.file && problem.column ? form.elements[problem.column] : null;
     if (field && field.setAttribute) {

@@ -14,6 +14,7 @@ from api.policy import open_to_all, person
 from api.web.forms import Typed, typed
 from api.web.templates import go, page
 from gaitlab.clinic import accounts
+from gaitlab.clinic.access import Permission, Principal
 from gaitlab.errors import GaitlabError
 
 router = APIRouter(include_in_schema=False, route_class=GuardedRoute)
@@ -71,13 +72,13 @@ def log_in(call: CurrentCall) -> Response:
     form = typed(call.form, ("email", "next"))
     password = str(call.form.get("password", ""))
     try:
-        secret, _ = accounts.log_in(
+        secret, who = accounts.log_in(
             call.clinic, email=form.value("email"), password=password, address=call.address
         )
     except GaitlabError as error:
         problem = problem_of(error)
         return page(None, "login.html", problem.status, form=Typed(form.values, problem=problem), new=False)
-    answer = go(_inside(form.value("next")))
+    answer = go(_start(who, _inside(form.value("next"))))
     _set_cookie(call, answer, secret)
     return answer
 
@@ -102,6 +103,11 @@ def _set_cookie(call: Call, answer: Response, secret: str) -> None:
         httponly=True,
         samesite="lax",
     )
+
+
+def _start(who: Principal, path: str) -> str:
+    """Where a log-in leads; who may not see the list of patients starts where they have something to do."""
+    return "/tokens" if path == "/" and Permission.PATIENT_READ not in who.permissions else path
 
 
 def _inside(path: str) -> str:

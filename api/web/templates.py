@@ -45,7 +45,14 @@ def error_page(request: Request, problem: Problem) -> Response:
         trace_of(request).cleared = True  # the answer shows nothing but the way to the log-in
         return go(login_url(request.scope["path"]))
     call = getattr(request.state, "call", None)
-    return page(call, "error.html", problem.status, problem=problem)
+    log_in = _login_from(request) if problem.status == 401 else ""
+    return page(call, "error.html", problem.status, problem=problem, log_in=log_in)
+
+
+def _login_from(request: Request) -> str:
+    """The log-in, coming back to the form that was sent, where its address shows it."""
+    path: str = request.scope["path"]
+    return login_url(path if path.endswith(("/new", "/edit", "/tokens")) else "/")
 
 
 def login_url(path: str) -> str:

@@ -179,3 +179,18 @@ def test_an_engineer_can_only_give_a_token_what_they_have(house: House) -> None:
         "/tokens", {"name": "n", "days": "1", "scopes": ["patient:write"]}
     )
     assert answer.status_code in (403, 422)
+
+
+def test_an_account_that_may_not_see_patients_starts_at_the_tokens(house: House) -> None:
+    form = {"email": "ada@clinic.example", "password": PASSWORD, "next": "/"}
+    answer = house.stranger().post("/login", form)
+    assert (answer.status_code, answer.headers["location"]) == (303, "/tokens")
+    assert house.browser(house.ada).get("/tokens").status_code == 200
+
+
+def test_a_form_sent_after_the_log_in_ended_leads_to_the_log_in(house: House) -> None:
+    browser = house.browser(house.alice)
+    browser.post("/logout")
+    answer = browser.post("/patients/new", {"code": "P-1"})
+    assert answer.status_code == 401
+    assert soup(answer).select_one('main a[href="/login?next=/patients/new"]') is not None

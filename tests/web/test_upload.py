@@ -109,6 +109,15 @@ def test_a_chosen_placement_goes_before_the_guess_and_a_file_can_be_left_out(hou
     assert len(browser.soup(answer.headers["location"]).select(".files-table tbody tr")) == 2
 
 
+def test_two_files_of_one_name_are_refused(house: House) -> None:
+    patient, browser = house.patient(house.alice), house.browser(house.alice)
+    same = [InputFile("lf.txt", LEFT.content), InputFile("lf.txt", RIGHT.content)]
+    answer = send(browser, patient.id, as_choice(same))
+    assert answer.status_code == 422
+    assert "Two files are called lf.txt." in answer.text
+    assert house.n_sessions(patient.id) == 0
+
+
 def test_a_placement_that_does_not_exist_is_refused(house: House) -> None:
     patient, browser = house.patient(house.alice), house.browser(house.alice)
     answer = send(browser, patient.id, as_choice([LEFT]), placed_name=[LEFT.name], placed_as=["left_elbow"])
