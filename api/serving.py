@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import ipaddress
 import logging
+import socket
 import sys
 import threading
 
@@ -36,7 +37,8 @@ def serve(
     Raises
     ------
     Misconfigured
-        If ``host`` is reachable from other machines and there is no account yet, or no proxy that speaks TLS.
+        If ``host`` is reachable from other machines and there is no account yet, or no proxy that speaks TLS; if the
+        port is taken.
     """
     web = web or WebSettings.from_environment()
     if behind_proxy and not web.behind_tls:
@@ -44,21 +46,39 @@ def serve(
     clinic = Clinic.open(settings)
     try:
         check_exposure(host, behind_proxy=behind_proxy, has_account=not accounts.needs_setup(clinic))
-        _announce(clinic, host, port)
-        threading.Thread(target=_warm_up, daemon=True).start()
-        _log_to_stderr()
-        uvicorn.run(
-            create_app(clinic, web),
-            host=host,
-            port=port,
-            log_config=None,
-            access_log=False,  # it would write URLs; api.middleware writes the route's template
-            server_header=False,
-            proxy_headers=behind_proxy,
-            forwarded_allow_ips="127.0.0.1,::1",
-        )
+        with _listen(host, port) as listener:
+            _announce(clinic, host, port)
+            threading.Thread(target=_warm_up, daemon=True).start()
+            _log_to_stderr()
+            config = uvicorn.Config(
+                create_app(clinic, web),
+                log_config=None,
+                access_log=False,  # it would write URLs; api.middleware writes the route's template
+                server_header=False,
+                proxy_headers=behind_proxy,
+                forwarded_allow_ips="127.0.0.1,::1",
+            )
+            uvicorn.Server(config).run(sockets=[listener])
     finally:
         clinic.close()
+
+
+def _listen(host: str, port: int) -> socket.socket:
+    """Take the port before anything is announced: a second server must not replace the first one's set-up code."""
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    listener = socket.socket(family, socket.SOCK_STREAM)
+    listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        listener.bind((host.strip("[]"), port))
+        listener.listen(128)
+    except OSError as error:
+        listener.close()
+        raise Misconfigured(
+            "cannot_listen",
+            f"Cannot listen on {host}, port {port}: {error.strerror or 'the address is not known'}.",
+            "Stop whatever uses the port (perhaps another gaitlab serve), or choose another with --port.",
+        ) from None
+    return listener
 
 
 def check_exposure(host: str, *, behind_proxy: bool, has_account: bool) -> None:

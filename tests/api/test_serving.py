@@ -13,8 +13,11 @@ from pathlib import Path
 
 import pytest
 
-from api.serving import check_exposure
+from api.serving import check_exposure, serve
 from api.settings import WebSettings
+from gaitlab.clinic import accounts
+from gaitlab.clinic.clinic import Clinic
+from gaitlab.clinic.settings import ClinicSettings
 from gaitlab.errors import Misconfigured
 
 PROGRAM = (
@@ -59,10 +62,10 @@ def test_the_first_start_prints_the_code_and_answers_and_stops(tmp_path: Path) -
         said = ""
         for line in server.stderr:
             said += line
-            if "Uvicorn running" in line or "startup failed" in line:
+            if "startup complete" in line or "startup failed" in line:
                 break
         try:
-            with urllib.request.urlopen(f"http://127.0.0.1:{port}/setup") as answer:
+            with urllib.request.urlopen(f"http://127.0.0.1:{port}/setup", timeout=30) as answer:
                 page = answer.read().decode()
         finally:
             server.send_signal(signal.SIGTERM)
@@ -71,3 +74,19 @@ def test_the_first_start_prints_the_code_and_answers_and_stops(tmp_path: Path) -
     assert re.search(rf"page   http://127\.0\.0\.1:{port}/setup\n  code   \S{{16,}}\n", said)
     assert '"route": "/setup"' in said
     assert "Traceback" not in said
+
+
+def test_a_second_server_on_the_port_is_refused_and_leaves_the_code_valid(tmp_path: Path) -> None:
+    settings = ClinicSettings(data_dir=tmp_path / "data")
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        clinic = Clinic.open(settings)
+        code = accounts.setup_code(clinic)
+        assert code is not None
+        with pytest.raises(Misconfigured, match="Cannot listen"):
+            serve(settings, port=taken.getsockname()[1])
+        accounts.create_first_account(
+            clinic, code=code, email="ada@clinic.example", name="Ada", password="correct horse battery"
+        )
+        clinic.close()
