@@ -34,6 +34,20 @@ CHROMIUM = Path(os.environ.get("GAITLAB_CHROMIUM", "/usr/bin/chromium"))
 WIDE, NARROW = {"width": 1280, "height": 900}, {"width": 390, "height": 844}
 
 
+BROKEN_WORDS = """[...document.querySelectorAll('th, td.num, td.fixed')].flatMap(cell => {
+  if (cell.classList.contains('free') || !cell.getClientRects().length) return [];
+  const walk = document.createTreeWalker(cell, NodeFilter.SHOW_TEXT), found = [];
+  while (walk.nextNode()) for (const word of walk.currentNode.data.matchAll(/[^\\s-]+/g)) {
+    const range = document.createRange();
+    range.setStart(walk.currentNode, word.index);
+    range.setEnd(walk.currentNode, word.index + word[0].length);
+    if (new Set([...range.getClientRects()].map(r => Math.round(r.top))).size > 1) found.push(word[0]);
+  }
+  return found;
+})"""
+"""Words of headings and numbers that run over two lines."""
+
+
 @pytest.fixture(scope="module")
 def chromium() -> Iterator[Browser]:
     if not CHROMIUM.is_file():
@@ -263,16 +277,62 @@ def test_the_upload_works_without_javascript(
     assert site.clinic.ready()
 
 
+def test_after_the_log_in_ended_the_same_form_is_sent_from_a_new_one(page: Page, data_dir: Path) -> None:
+    add_patient(page)
+    page.get_by_label("Note").fill("typed & kept")
+    folder = data_dir / "mtw-10m-walk"
+    page.get_by_label("Choose files").set_input_files([folder / "1-1_lf.txt", folder / "1-1_rf.txt"])
+    expect(page.get_by_text("2 files read.")).to_be_visible()
+    page.context.clear_cookies()
+    page.get_by_role("button", name="Store and analyse").click()
+    alert = page.get_by_role("alert")
+    expect(alert).to_contain_text("You were logged out.")
+    with page.context.expect_page() as opened:
+        alert.get_by_role("link", name="Log in").click()
+    other = opened.value
+    other.get_by_label("E-mail address").fill("anna@clinic.example")
+    other.get_by_label("Password").fill(PASSWORD)
+    other.get_by_role("button", name="Log in").click()
+    expect(other.get_by_role("heading", level=1)).to_have_text("Patients")
+    page.get_by_role("button", name="Store and analyse").click()
+    expect(page.get_by_role("heading", level=1)).to_have_text("Timed 25-foot walk")
+    expect(page.locator("main")).to_contain_text("typed & kept")
+
+
+def test_a_second_file_of_the_same_name_does_not_replace_the_first(
+    page: Page, data_dir: Path, tmp_path: Path
+) -> None:
+    add_patient(page)
+    first, other = data_dir / "mtw-10m-walk" / "1-1_lf.txt", tmp_path / "1-1_lf.txt"
+    other.write_bytes((data_dir / "mtw-10m-walk" / "1-1_rf.txt").read_bytes())
+    chooser = page.get_by_label("Choose files")
+    chooser.set_input_files(first)
+    expect(page.get_by_text("1 file read.")).to_be_visible()
+    chooser.set_input_files(other)
+    expect(page.get_by_role("alert")).to_contain_text("Two different files are called 1-1_lf.txt")
+    kept = "document.querySelector('input[type=file]').files[0].size"
+    assert page.evaluate(kept) == first.stat().st_size
+    page.get_by_role("button", name="Remove 1-1_lf.txt").click()
+    chooser.set_input_files(other)
+    expect(page.get_by_text("1 file read.")).to_be_visible()
+    assert page.evaluate(kept) == other.stat().st_size
+
+
 @pytest.mark.parametrize("size", [WIDE, NARROW], ids=["1280", "390"])
 def test_no_page_is_wider_than_the_screen(
     page: Page, site: Site, data_dir: Path, size: dict[str, int]
 ) -> None:
     add_patient(page)
     form = page.url
+    patient = form.removesuffix("/sessions/new")
+    page.goto(f"{patient}/edit")
+    page.get_by_label("Diagnosis").fill("d" * 150)
+    page.get_by_role("button", name="Save").click()
+    page.goto(form)
+    page.get_by_label("Note").fill("n" * 150)
     upload(page, data_dir)
     session = page.url
     page.set_viewport_size(size)  # type: ignore[arg-type]
-    patient = form.removesuffix("/sessions/new")
     paths = (form, session, patient, f"{patient}/edit", f"{session}/trials/new", f"{session}/report.html")
     for address in (
         *paths,
@@ -286,3 +346,5 @@ def test_no_page_is_wider_than_the_screen(
             && e.scrollWidth > e.clientWidth + 1 && e.clientWidth > 2).map(e => e.className)"""
         )
         assert cut == [], address
+        broken = page.evaluate(BROKEN_WORDS)
+        assert broken == [], address
