@@ -86,6 +86,23 @@ def test_swapped_simulated_legs_are_refused_too() -> None:
     assert _refusal(Recording(swapped)).code == "placement_swapped"
 
 
+def test_feet_of_two_different_trials_are_told(data_dir: Path) -> None:
+    folder = data_dir / "mtw-10m-walk"
+    feet = {Placement.LEFT_FOOT: folder / "1-4_lf.txt", Placement.RIGHT_FOOT: folder / "1-5_rf.txt"}
+    result = analyze(read_recording(placements=feet), Settings(course_m=7.62)).result
+    assert "not_one_walk" in [warning.code for warning in result.warnings]
+    assert not [p.name for p in result.parameters if p.status == "ok" and p.side == "both" and p.n]
+
+
+def test_two_sensors_of_one_leg_are_refused(data_dir: Path) -> None:
+    folder = data_dir / "mtw-leg-vicon"
+    feet = {
+        Placement.LEFT_FOOT: folder / "S02-Trial-Walk-1-000_00B40C55.txt",
+        Placement.RIGHT_FOOT: folder / "S02-Trial-Walk-1-000_00B40C44.txt",
+    }
+    assert _refusal(read_recording(placements=feet)).code == "same_leg"
+
+
 def test_the_same_recording_gives_the_same_bytes() -> None:
     recording = out_and_back().recording
     first, second = analyze(recording), analyze(recording)
@@ -221,6 +238,7 @@ def test_every_trial_of_ten_metres_and_back_is_analysed_and_comes_back(data_dir:
             closing.append(float(np.linalg.norm(place - foot.motion.position_m[0, :2])))
             distances.append(float(foot.length_m[foot.end_s <= walked / recording.rate_hz + 1].sum()))
         assert analysis.result.walk.turns, path.stem
+        assert "not_one_walk" not in [warning.code for warning in analysis.result.warnings], path.stem
         assert analysis.result.parameter("walk_time") is not None
     assert len(closing) == 92
     assert np.median(closing) < 0.40
