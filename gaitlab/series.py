@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -62,17 +61,6 @@ def to_csv(series: SensorSeries) -> str:
     """CSV text with the fixed columns, six decimals: microseconds and micrometres."""
     text: str = series.to_frame().to_csv(index=False, float_format="%.6f", lineterminator="\n")
     return text
-
-
-def write_folder(series: Series, folder: Path) -> list[Path]:
-    """Write ``left_foot.csv`` and the like into ``folder`` and return their paths."""
-    folder.mkdir(parents=True, exist_ok=True)
-    paths = []
-    for placement, one in series.items():
-        path = folder / f"{placement}.csv"
-        path.write_text(to_csv(one), encoding="utf-8")
-        paths.append(path)
-    return paths
 
 
 def to_bytes(series: Series) -> bytes:

@@ -33,8 +33,7 @@ def speeds(feet: Mapping[Side, FootGait]) -> list[Measurement]:
             steady.append(not_determinable(d.STEADY_SPEED, MeasuredSide(side), reason))
             continue
         foot = feet[side]
-        no_straight = "There is no stride on a straight part."
-        velocity.append(_speed(d.STRIDE_VELOCITY, side, foot, foot.straight, no_straight))
+        velocity.append(_speed(d.STRIDE_VELOCITY, side, foot, foot.straight, NO_STEADY))
         steady.append(_speed(d.STEADY_SPEED, side, foot, chosen_strides(foot), NO_STEADY))
     both = of_both(*steady)
     if both.status is Status.NOT_DETERMINABLE:

@@ -18,6 +18,8 @@ SWAY_SD_M = 0.005
 """Uncertainty of the knee's movement across the line of walking within a rest of about 0.3 s: an acceleration error
 of 0.08 m/s² and the sensor's play on the skin."""
 
+SHORTEST_REST_S = 0.05
+"""A shorter rest shows no sway."""
 UNSEEN = "It is below what this method can see."
 
 
@@ -42,7 +44,7 @@ def knee_gait(motion: KneeMotion, foot: FootGait, shift: int) -> KneeGait:
         if not (foot.straight[k - 1] and foot.straight[k]):
             continue
         low, high = int(rests.start[k]) + shift, int(rests.end[k]) + shift
-        if low < 0 or high > motion.n_samples or high - low < 5:
+        if low < 0 or high > motion.n_samples or high - low < SHORTEST_REST_S * motion.rate_hz:
             continue
         line = (places[k + 1] - places[k - 1])[:2]
         across = np.array([-line[1], line[0]]) / max(float(np.linalg.norm(line)), 1e-9)

@@ -25,6 +25,8 @@ from gaitlab.recording.model import Floats, Side
 
 LONGEST_STRIDE_S = 4.0
 """A longer time between two contacts of a foot holds a stop (mobgap's gate for a stride: 3 s)."""
+OVERLAP_S = 0.05
+"""A swing of the other foot may reach this far out of a stance and still be its swing: the error of two events."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +39,6 @@ class Phases:
     stride_s: Floats
     stance_s: Floats
     swing_s: Floats
-    length_m: Floats
 
 
 def phases_of(foot: FootGait) -> Phases:
@@ -46,9 +47,7 @@ def phases_of(foot: FootGait) -> Phases:
     k = np.flatnonzero(foot.steady & foot.continued)
     k = k[contact[k] - contact[k - 1] <= LONGEST_STRIDE_S]
     stride = contact[k] - contact[k - 1]
-    return Phases(
-        contact[k - 1], off[k], stride, off[k] - contact[k - 1], contact[k] - off[k], foot.length_m[k]
-    )
+    return Phases(contact[k - 1], off[k], stride, off[k] - contact[k - 1], contact[k] - off[k])
 
 
 def times_and_phases(feet: Mapping[Side, FootGait], steps: Steps) -> list[Measurement]:
@@ -102,7 +101,7 @@ def _double_support(
         own, other = phases[side], feet[side.other].events
         shares = []
         for contact, off, stride in zip(own.contact_s, own.off_s, own.stride_s, strict=True):
-            inside = (other.foot_off_s >= contact - 0.05) & (other.initial_contact_s <= off + 0.05)
+            inside = (other.foot_off_s >= contact - OVERLAP_S) & (other.initial_contact_s <= off + OVERLAP_S)
             if inside.sum() == 1:
                 swing = float(other.initial_contact_s[inside][0] - other.foot_off_s[inside][0])
                 shares.append(100.0 * (off - contact - swing) / stride)

@@ -129,12 +129,8 @@ class Swings:
         return float(np.linalg.norm(self.place_m[high] - self.place_m[low])) if high > low else 0.0
 
 
-def turning_strides(foot: FootMotion, params: CourseParams | None = None) -> Bools:
-    """True for each stride (from one rest to the next) in which the foot turns, shape (k − 1,)."""
-    return _turning(heading_change(foot, foot.rests), params or CourseParams())
-
-
 def _turning(change: Floats, p: CourseParams) -> Bools:
+    """True for each stride in which the foot turns, from its changes of heading, shape (k − 1,)."""
     turning: Bools = np.abs(change) >= p.stride_turn_rad
     if len(change) < p.curve_strides:
         return turning
