@@ -183,6 +183,64 @@ def no_rests() -> Rests:
     return Rests(none, none, none, np.zeros((0, 3)))
 
 
+@dataclass(frozen=True, eq=False)
+class RestEvidence:
+    """How good each rest is; arrays of shape (k,).
+
+    Attributes
+    ----------
+    duration_s : ndarray
+        From its first row to the row after its last.
+    gyr_sd_radps, acc_sd_mps2 : ndarray
+        Spread within it: root of the summed variances of the three axes. NaN for a rest of one row.
+    residual_mps : ndarray
+        Size of what the velocity had drifted to since the end of the rest before; 0 for the first.
+    implied_acc_error_mps2 : ndarray
+        Constant error of the acceleration that would explain it: the residual over the time since the rest before.
+        NaN for the first.
+    """
+
+    duration_s: Floats
+    gyr_sd_radps: Floats
+    acc_sd_mps2: Floats
+    residual_mps: Floats
+    implied_acc_error_mps2: Floats
+
+
+def rest_evidence(
+    acceleration_mps2: Floats, rate_radps: Floats, rests: Rests, rate_hz: float
+) -> RestEvidence:
+    """What the signals, both shape (n, 3) in any axes, show of each rest after ``reset_at_rests``."""
+    residual = np.linalg.norm(rests.residual_mps, axis=1)
+    since = np.full(len(rests), np.nan)
+    since[1:] = (rests.start[1:] - np.maximum(rests.end - 1, rests.start)[:-1]) / rate_hz
+    implied = np.divide(residual, since, out=np.full(len(rests), np.nan), where=since > 0.0)
+    return RestEvidence(
+        (rests.end - rests.start) / rate_hz,
+        _spread(rate_radps, rests),
+        _spread(acceleration_mps2, rests),
+        residual,
+        implied,
+    )
+
+
+def _spread(values: Floats, rests: Rests) -> Floats:
+    """Root of the summed variances of the columns within each rest; NaN where it has fewer than two rows."""
+    count = rests.end - rests.start
+    spread = np.full(len(rests), np.nan)
+    several = np.flatnonzero(count > 1)
+    if not len(several):
+        return spread
+    n = count[several]
+    first = np.cumsum(n) - n
+    rows = np.arange(int(n.sum())) + np.repeat(rests.start[several] - first, n)
+    inside = values[rows]
+    mean = np.add.reduceat(inside, first, axis=0) / n[:, None]
+    squares = ((inside - np.repeat(mean, n, axis=0)) ** 2).sum(axis=1)
+    spread[several] = np.sqrt(np.add.reduceat(squares, first) / (n - 1))
+    return spread
+
+
 def restlessness(
     acceleration_mps2: Floats, rate_radps: Floats, rate_hz: float, params: RestParams | None = None
 ) -> float | None:

@@ -16,7 +16,9 @@ from scipy.spatial.transform import Rotation
 
 from gaitlab.motion.extrema import prominent_peaks
 from gaitlab.motion.foot import track_foot
-from gaitlab.motion.rest import cycle_time, find_rests, restlessness
+from gaitlab.motion.integration import reset_at_rests, velocity_of
+from gaitlab.motion.model import Rests
+from gaitlab.motion.rest import cycle_time, find_rests, no_rests, rest_evidence, restlessness
 from gaitlab.recording import read_recording
 from gaitlab.recording.model import Placement, Side
 from gaitlab.simulation import TYPICAL_MTW, Plan, Stand, Turn, Walk, simulate
@@ -142,3 +144,35 @@ def test_a_rest_that_is_split_in_two_is_one_rest() -> None:
     time_s = np.arange(sensor.n_samples) / sensor.rate_hz
     plain, twitching = track_foot(sensor, time_s), track_foot(replace(sensor, gyr_radps=gyr), time_s)
     assert len(twitching.rests) == len(plain.rests)
+
+
+def test_the_evidence_of_a_rest_is_that_of_its_own_rows() -> None:
+    rng = np.random.default_rng(8)
+    acceleration, rate = rng.normal(0.0, 2.0, (400, 3)), rng.normal(1.0, 0.5, (400, 3))
+    start, end = np.array([0, 90, 210, 399]), np.array([40, 92, 300, 400])
+    rests = Rests(start, end, start, rng.normal(0.0, 0.1, (4, 3)))
+    evidence = rest_evidence(acceleration, rate, rests, 200.0)
+    np.testing.assert_allclose(evidence.duration_s, [0.2, 0.01, 0.45, 0.005])
+    for k in range(3):
+        rows = slice(start[k], end[k])
+        expected = [np.sqrt(signal[rows].var(axis=0, ddof=1).sum()) for signal in (rate, acceleration)]
+        assert [evidence.gyr_sd_radps[k], evidence.acc_sd_mps2[k]] == pytest.approx(expected)
+    assert np.isnan([evidence.gyr_sd_radps[3], evidence.acc_sd_mps2[3]]).all()
+
+
+def test_a_constant_error_of_the_acceleration_is_what_the_evidence_implies() -> None:
+    """Closed form: a sensor that lies still and reads (0.03, 0.04, 0) m/s² too much, at rest now and then."""
+    acceleration = np.tile([0.03, 0.04, 0.0], (1000, 1))
+    rests = Rests(
+        np.array([0, 150, 480]), np.array([50, 200, 481]), np.array([20, 170, 480]), np.zeros((3, 3))
+    )
+    _, rests = reset_at_rests(velocity_of(acceleration, 100.0), rests)
+    evidence = rest_evidence(acceleration, np.zeros((1000, 3)), rests, 100.0)
+    assert np.isnan(evidence.implied_acc_error_mps2[0])
+    np.testing.assert_allclose(evidence.implied_acc_error_mps2[1:], 0.05)
+    np.testing.assert_allclose(evidence.residual_mps, [0.0, 0.05 * 1.01, 0.05 * 2.81])
+
+
+def test_no_rests_have_no_evidence() -> None:
+    evidence = rest_evidence(np.zeros((9, 3)), np.zeros((9, 3)), no_rests(), 100.0)
+    assert all(len(column) == 0 for column in vars(evidence).values())
