@@ -1,4 +1,5 @@
-"""The command line: ``gaitlab analyze``, ``doctor``, ``demo``, ``serve``, ``user``, ``token``, ``db``, ``audit``.
+"""The command line: ``gaitlab analyze``, ``doctor``, ``validate``, ``demo``, ``serve``, ``user``, ``token``, ``db``,
+``audit``.
 
 Exit status: 0 done · 1 the input cannot be used or the output cannot be written (one message on standard error;
 none where whoever read standard output stopped reading) · 2 wrong usage.

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 METHODS = ("gaitlab", "ikizoglu2018")
 PLACEMENTS = ("left_foot", "right_foot", "left_knee", "right_knee")
+VALIDATION_SETS = ("10m-walk", "leg-vicon", "foot-mocap", "foot-loop", "all")
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -26,6 +27,7 @@ def build_parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
     _analyze(commands)
     _doctor(commands)
+    _validate(commands)
     _demo(commands)
     _serve(commands)
     _user(commands)
@@ -99,6 +101,25 @@ def _doctor(commands: Commands) -> None:
     )
     command.add_argument("--json", action="store_true", help="print JSON")
     command.set_defaults(run=_late("doctor", "run"))
+
+
+def _validate(commands: Commands) -> None:
+    command = commands.add_parser(
+        "validate",
+        help="tell how far the figures are from the truth, on recordings that bring it with them",
+        description="Analyse a folder of public recordings whose truth is known and print the table of errors beside the"
+        " figures to reach. The recordings are found by the pattern of their names; one that cannot be used is listed with"
+        " the reason, and the others count.",
+    )
+    command.add_argument("set", choices=VALIDATION_SETS, metavar="SET", help=", ".join(VALIDATION_SETS))
+    command.add_argument(
+        "folder", type=_path, metavar="DIR", help="folder of the recordings; for all: the folder above"
+    )
+    command.add_argument(
+        "--json", type=_path, nargs="?", const="-", metavar="FILE", help="write JSON; - or nothing: print it"
+    )
+    command.add_argument("--trials", action="store_true", help="also each trial, stride or gait cycle")
+    command.set_defaults(run=_late("validate", "run"))
 
 
 def _demo(commands: Commands) -> None:

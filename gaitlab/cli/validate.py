@@ -1,0 +1,30 @@
+"""``gaitlab validate``."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from gaitlab.cli.files import write_files
+from gaitlab.errors import InputError
+from gaitlab.validation import to_json, to_text, validate, validate_all
+
+
+def run(chosen: argparse.Namespace) -> int:
+    """Print the table of one set, or of all that a folder holds."""
+    to_stdout = chosen.json == "-"
+    if to_stdout and sys.stdout is None:
+        raise InputError("cannot_write", "Standard output is closed.", "Give --json the name of a file.")
+    folder = Path(chosen.folder)
+    tables = validate_all(folder) if chosen.set == "all" else [validate(chosen.set, folder)]
+    document = to_json(tables, trials=chosen.trials) if chosen.json else ""
+    if to_stdout:
+        sys.stdout.write(document)
+        return 0
+    if document:
+        write_files({Path(chosen.json): document.encode()})
+    sys.stdout.write(to_text(tables, trials=chosen.trials))
+    if document:
+        print(f"wrote {chosen.json}")
+    return 0

@@ -1,0 +1,7 @@
+"""How far the figures are from the truth: tables of error on recordings that bring their truth with them."""
+
+from gaitlab.validation.model import Table
+from gaitlab.validation.sets import SETS, validate, validate_all
+from gaitlab.validation.text import to_json, to_text
+
+__all__ = ["SETS", "Table", "to_json", "to_text", "validate", "validate_all"]
