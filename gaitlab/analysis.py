@@ -10,7 +10,7 @@ import numpy as np
 from gaitlab import quality
 from gaitlab.errors import InputError
 from gaitlab.gait import course as walking
-from gaitlab.gait import lengths, timing
+from gaitlab.gait import lengths, timing, variability
 from gaitlab.gait import timed_walk as timed_course
 from gaitlab.gait.knees import knee_gait, knee_parameters
 from gaitlab.gait.model import Gait
@@ -132,6 +132,7 @@ def _measure(
     }
     steps = find_steps(feet)
     timed = timed_course.time_course(feet, course, settings.course_m)
+    spreads = variability.spreads_of(feet)
     parameters = (
         *timed_course.timed_walk(timed),
         *walking.speeds(feet),
@@ -141,13 +142,15 @@ def _measure(
         *lengths.step_width(feet, steps, frame.stood_together),
         *timing.times_and_phases(feet, steps),
         timing.stop_duration(feet, course),
+        *variability.variability(spreads),
         *walking.turns(course),
         walking.path_deviation(feet, course, frame.stood_together),
         *walking.start_to_end(feet),
         *knee_parameters(knees),
     )
     findings = quality.merged(recording.findings, quality.findings(recording, settings.method, feet, knees))
-    return Gait(feet, knees, course, timed, quality.with_reserve(parameters, findings), findings)
+    marked = quality.with_reserve(parameters, findings)
+    return Gait(feet, knees, course, timed, marked, findings, spreads)
 
 
 def _series(gait: Gait) -> dict[Placement, SensorSeries]:

@@ -45,10 +45,23 @@ def result_of(recording: Recording, settings: Settings, gait: Gait) -> result.Re
         feet={side.value: _foot(foot) for side, foot in gait.feet.items()},
         knees={side.value: _knee(knee) for side, knee in gait.knees.items()},
         walk=_walk(gait),
-        parameters=tuple(_parameter(one) for one in gait.parameters),
+        parameters=tuple(parameter_of(one) for one in gait.parameters),
         warnings=tuple(
             result.ResultWarning(code=one.code, message=one.message, placement=one.placement)
             for one in gait.findings
+        ),
+        spreads=tuple(
+            result.StrideSpread(
+                name=name,
+                side=side.value,
+                n=one.n,
+                freedom=one.freedom,
+                mean=_r(one.mean),
+                observed_sd=_r(np.sqrt(one.variance)),
+                measurement_sd=_r(np.sqrt(one.measurement_variance)),
+            )
+            for name, sides in gait.spreads.items()
+            for side, one in sides.items()
         ),
     )
 
@@ -137,7 +150,8 @@ def _walk(gait: Gait) -> result.Walk:
     )
 
 
-def _parameter(one: Measurement) -> result.Parameter:
+def parameter_of(one: Measurement) -> result.Parameter:
+    """A measurement as it is stored."""
     definition, ci = one.definition, one.ci95
     return result.Parameter(
         name=definition.name,

@@ -163,6 +163,19 @@ class Parameter(_Part):
     decimals: int
 
 
+class StrideSpread(_Part):
+    """Scatter of a quantity over one foot's steady strides, for pooling trials: standard deviations observed and added
+    by the measurement, as shares of ``mean`` where that is 1."""
+
+    name: str
+    side: Literal["left", "right"]
+    n: int
+    freedom: int
+    mean: float
+    observed_sd: float
+    measurement_sd: float
+
+
 class ResultWarning(_Part):
     """Something the reader should know; ``placement`` where it concerns one sensor."""
 
@@ -185,6 +198,7 @@ class Result(BaseModel):
     walk: Walk
     parameters: tuple[Parameter, ...]
     warnings: tuple[ResultWarning, ...]
+    spreads: tuple[StrideSpread, ...] = ()
 
     def to_json(self) -> str:
         """Canonical JSON: the same result always has the same bytes."""

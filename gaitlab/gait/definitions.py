@@ -7,12 +7,14 @@ from gaitlab.gait.measurement import Definition
 IKIZOGLU = "İkizoğlu et al. 2018, table 1"
 GAITRITE = "GAITRite technical reference WI-02-15"
 OURS = "gaitlab"
+VARIABILITY = "König et al. 2016; Front Aging Neurosci 2018 00435 (20 strides, none beside a turn)"
 
 GROUPS: dict[str, str] = {
     "test": "Timed walk",
     "speed": "Speed and distance",
     "length": "Lengths",
     "time": "Times and phases",
+    "variability": "Variability",
     "course": "Course",
     "knee": "Knee",
 }
@@ -173,6 +175,50 @@ DOUBLE_SUPPORT = _definition(
     1,
     "Time with both feet on the ground, initial and terminal together, in % of the stride time; mean of the steady strides.",
     GAITRITE,
+)
+_WITHOUT_MEASUREMENT = (
+    "Mid-walk: without the first and the last two strides of a straight part. The variance that the measurement adds is"
+    " taken out; both: root of the mean of the two squares."
+)
+STRIDE_TIME_CV = _definition(
+    "stride_time_cv",
+    "Stride time variability",
+    "%",
+    "variability",
+    1,
+    "Standard deviation (n − 1) of the times from foot off to foot off in mid-walk, in % of their mean."
+    f" {_WITHOUT_MEASUREMENT}",
+    VARIABILITY,
+)
+STRIDE_LENGTH_CV = _definition(
+    "stride_length_cv",
+    "Stride length variability",
+    "%",
+    "variability",
+    1,
+    f"Standard deviation (n − 1) of the stride lengths in mid-walk, in % of their mean. {_WITHOUT_MEASUREMENT}",
+    VARIABILITY,
+)
+STRIDE_VELOCITY_CV = _definition(
+    "stride_velocity_cv",
+    "Stride velocity variability",
+    "%",
+    "variability",
+    1,
+    "Standard deviation (n − 1) of stride length divided by the time from foot off to foot off in mid-walk, in % of its"
+    " mean."
+    f" {_WITHOUT_MEASUREMENT}",
+    VARIABILITY,
+)
+DOUBLE_SUPPORT_SD = _definition(
+    "double_support_sd",
+    "Double support variability",
+    "%",
+    "variability",
+    2,
+    "Standard deviation (n − 1) of the double support in mid-walk, which is itself in % of the stride time."
+    f" {_WITHOUT_MEASUREMENT}",
+    f"Larsson et al. 2015 (rises with vestibular asymmetry); {VARIABILITY}",
 )
 STOP_DURATION = _definition(
     "stop_duration",

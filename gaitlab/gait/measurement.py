@@ -57,6 +57,8 @@ class Measurement:
         How many strides, steps or instants it rests on.
     reason : str
         Why it wants attention or is not determinable; or the assumption it rests on.
+    interval : tuple of 2 floats or None
+        Its 95 % interval where that is not ``value`` ± 1.96 ``sd``.
     """
 
     definition: Definition
@@ -66,11 +68,15 @@ class Measurement:
     n: int
     status: Status = Status.OK
     reason: str = ""
+    interval: tuple[float, float] | None = None
 
     @property
     def ci95(self) -> tuple[float, float] | None:
+        """The interval that holds the true value with a probability of 95 %."""
         if self.value is None or self.sd is None:
             return None
+        if self.interval is not None:
+            return self.interval
         low, high = self.value - TWO_SIDED_95 * self.sd, self.value + TWO_SIDED_95 * self.sd
         return (low if self.definition.signed else max(low, min(0.0, self.value))), high
 

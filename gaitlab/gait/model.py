@@ -9,6 +9,7 @@ from gaitlab.gait.knees import KneeGait
 from gaitlab.gait.measurement import Measurement
 from gaitlab.gait.strides import FootGait
 from gaitlab.gait.timed_walk import TimedCourse
+from gaitlab.gait.variability import Spreads
 from gaitlab.motion.course import Course
 from gaitlab.recording.model import Finding, Side
 
@@ -23,3 +24,4 @@ class Gait:
     timed: TimedCourse | str
     parameters: tuple[Measurement, ...]
     findings: tuple[Finding, ...]
+    spreads: Spreads
