@@ -9,6 +9,7 @@ from pathlib import Path
 from gaitlab.cli.files import write_files
 from gaitlab.errors import InputError
 from gaitlab.validation import to_json, to_text, validate, validate_all
+from gaitlab.validation.folder import files_in, folders_in
 
 
 def run(chosen: argparse.Namespace) -> int:
@@ -23,8 +24,13 @@ def run(chosen: argparse.Namespace) -> int:
         sys.stdout.write(document)
         return 0
     if document:
-        write_files({Path(chosen.json): document.encode()})
+        write_files({Path(chosen.json): document.encode()}, _read(folder))
     sys.stdout.write(to_text(tables, trials=chosen.trials))
     if document:
         print(f"wrote {chosen.json}")
     return 0
+
+
+def _read(folder: Path) -> list[Path]:
+    """What was read, or could have been: it is not overwritten."""
+    return [path for home in folders_in(folder) for path in files_in(home)]

@@ -6,7 +6,7 @@ some samples are there twice and some are missing, so each time is laid on a reg
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -16,12 +16,10 @@ from gaitlab.errors import InputError
 from gaitlab.motion.offset import STANDARD_GRAVITY_MPS2
 from gaitlab.recording import InputFile, Placement, Recording
 from gaitlab.recording.model import Floats
-from gaitlab.recording.quality import clock_findings
 from gaitlab.recording.rates import Rate, check_rate
-from gaitlab.recording.reading import to_sensor
 from gaitlab.validation.folder import files_in, folders_in, not_this_set, read_csv, read_file
-from gaitlab.validation.foot_mocap import plain_samples
-from gaitlab.validation.model import Column, Details, Goal, Problem, Row, Table
+from gaitlab.validation.model import Column, Details, Goal, KnownSet, Problem, Row, Table
+from gaitlab.validation.plain import recording_of, samples_of
 from gaitlab.validation.statistics import M, figure
 
 NAME = "foot-loop"
@@ -74,11 +72,8 @@ def read_loop(path: Path) -> Recording:
     first = np.flatnonzero(np.diff(packet, prepend=packet[0] - 1) > 0)
     rate = Rate(rate_hz, "stamps")
     gyr, acc = np.deg2rad(values[first, 1:4]), values[first, 4:7] * STANDARD_GRAVITY_MPS2
-    samples = plain_samples(file, packet[first], rate, acc, gyr)
-    placement = Placement.LEFT_FOOT
-    sensor = to_sensor(placement, samples, rate)
-    findings = [replace(finding, placement=placement) for finding in clock_findings(samples, sensor)]
-    return Recording({placement: sensor}, tuple(findings))
+    samples = samples_of(file, packet[first], rate, acc, gyr)
+    return recording_of({Placement.LEFT_FOOT: samples}, rate)
 
 
 def regular_clock(time_s: Floats, file: InputFile) -> tuple[np.ndarray, float]:
@@ -156,3 +151,6 @@ def _details(loops: list[Loop]) -> Details:
     )
     rows = ((one.recording, one.closing_m, one.horizontal_m, one.path_m, one.rests) for one in loops)
     return Details("loops", columns, tuple(rows))
+
+
+SET = KnownSet(NAME, WANTED, fits, validate)

@@ -6,10 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from gaitlab.validation.foot_mocap import FootCheck, StairCheck
+from gaitlab.validation.foot_mocap_check import FootCheck, StairCheck
 from gaitlab.validation.model import Cell, Column, Details, Figure, Goal, Row
-from gaitlab.validation.statistics import CM, M, figure, mean_absolute, mean_and_sd, share
+from gaitlab.validation.optical import STRIDE_COLUMNS, coverage_row, joined, length_row
+from gaitlab.validation.statistics import M, figure, share
 
+_SATURATED = "strides with a saturated sample, and those of them marked"
 LEVEL_M = 0.08
 """A foot that came to rest this much higher or lower than before has changed the level; a stair is about 0.17 m."""
 
@@ -20,48 +22,25 @@ def rows_of(feet: Sequence[FootCheck], stairs: Sequence[StairCheck]) -> tuple[Ro
 
 
 def _length_rows(feet: Sequence[FootCheck]) -> list[Row]:
-    errors = np.concatenate([foot.strides.error_m for foot in feet])
-    covered = np.concatenate([foot.strides.covered for foot in feet])
     saturated = np.concatenate([foot.saturated for foot in feet])
-    marked = np.concatenate([foot.marked for foot in feet])
+    marked = np.concatenate([foot.strides.marked for foot in feet])
     reference = np.concatenate([foot.reference_m for foot in feet])
-    rows = [
-        Row(
-            "stride_length_heel",
-            "stride length against the heel marker, between our rests",
-            (mean_absolute(errors, CM), *mean_and_sd(errors, CM)),
-            len(errors),
-            "strides",
-            2,
-            (Goal("MAE", high=3.0),),
-        ),
-        Row(
-            "stride_saturated",
-            "strides with a saturated sample, and those of them marked",
-            (
-                Figure("saturated", float(saturated.sum()), "", 0),
-                share("marked", int((saturated & marked).sum()), int(saturated.sum())),
-            ),
-            len(errors),
-            "strides",
-            2,
-            (Goal("marked", low=100.0),) if saturated.any() else (),
-        ),
-    ]
+    strides = [foot.strides for foot in feet]
+    errors = joined([one.error_m for one in strides])
+    what = "stride length against the heel marker, between our rests"
+    figures = (
+        Figure("saturated", float(saturated.sum()), "", 0),
+        share("marked", int((saturated & marked).sum()), int(saturated.sum())),
+    )
+    marking = (Goal("marked", low=100.0),) if saturated.any() else ()
+    rows = [length_row("stride_length_heel", what, errors, 2, (Goal("MAE", high=3.0),))]
     if len(reference):
         apart = reference[:, 0] - reference[:, 1]
-        figures = (mean_absolute(apart, CM), *mean_and_sd(apart, CM))
-        what = "stride length between the published instants"
-        rows.append(Row("stride_length_published", what, figures, len(apart), "strides"))
-    rows.append(
-        Row(
-            "stride_length_heel_covered",
-            "95 % interval of a stride length covers the optical one",
-            (share("covered", int(covered.sum()), len(covered)),),
-            len(covered),
-            "strides",
-        )
-    )
+        rows.append(length_row("stride_length_published", "  between the published instants", apart))
+    rows += [
+        Row("stride_saturated", _SATURATED, figures, len(errors), "strides", 2, marking),
+        coverage_row("stride_length_heel_covered", strides),
+    ]
     return rows
 
 
@@ -78,19 +57,7 @@ def _stair_row(one: StairCheck) -> Row:
 
 def details_of(feet: Sequence[FootCheck], stairs: Sequence[StairCheck]) -> tuple[Details, ...]:
     """One row a stride; one row a rest on the stairs."""
-    stride_columns = (
-        Column("recording"),
-        Column("side"),
-        Column("start", "s", 2),
-        Column("end", "s", 2),
-        Column("ours", "cm", 2),
-        Column("SD", "cm", 2),
-        Column("optical", "cm", 2),
-        Column("error", "cm", 2),
-        Column("covered"),
-        Column("turning"),
-        Column("saturated"),
-    )
+    stride_columns = (*STRIDE_COLUMNS, Column("saturated"))
     strides: list[tuple[Cell, ...]] = [
         (foot.recording, foot.side.value, *foot.strides.detail(k), "yes" if foot.saturated[k] else "no")
         for foot in feet

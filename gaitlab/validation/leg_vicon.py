@@ -1,205 +1,48 @@
-"""One leg under cameras: stride length against the mid-foot, the knee's path against the knee joint.
-
-Sy et al., gait-tech/gaittoolbox: MT Manager text of each sensor, ``vicon-left-leg.csv`` (``-right-``) with the joint
-centres at rows of those files.
-"""
+"""One leg under cameras: stride length against the mid-foot, the knee's path against the knee joint."""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 
-import numpy as np
-
-from gaitlab.analysis import Analysis, Settings, analyze
 from gaitlab.errors import InputError
-from gaitlab.motion.orientation import OrientationSource
-from gaitlab.recording import Placement, Recording, Side, read_recording
-from gaitlab.recording.intake import PLACEMENT_FILE
-from gaitlab.recording.mtmanager import device_in_name
-from gaitlab.validation.folder import files_in, folders_in, not_this_set, read_csv, read_file, read_json
-from gaitlab.validation.knee_path import KneeCheck, check_knee
-from gaitlab.validation.model import Problem, Table
-from gaitlab.validation.optical import StrideCheck, check_strides
-from gaitlab.validation.truth import OpticalPath
+from gaitlab.recording import Side
+from gaitlab.validation.folder import files_in, folders_in, not_this_set
+from gaitlab.validation.leg_vicon_check import LegCheck, check_leg, optical_files
+from gaitlab.validation.leg_vicon_rows import details_of, rows_of
+from gaitlab.validation.model import KnownSet, Problem, Table
 
 NAME = "leg-vicon"
 WANTED = (
     "vicon-left-leg.csv or vicon-right-leg.csv, and beside it the text file of each sensor (…_00B40C55.txt, or"
     " placement.json)"
 )
-DEVICES = {
-    "00B40C55": "left_foot",
-    "00B40C48": "right_foot",
-    "00B40BA5": "left_shank",
-    "00B40C35": "right_shank",
-    "00B40C45": "left_thigh",
-    "00B40C3C": "right_thigh",
-}
-"""Where the sensors of this set were worn; those above the ankles and on the pelvis are not used."""
-SEGMENTS = ("shank", "thigh")
-METHODS = ("gaitlab", "ikizoglu2018")
-_OPTICAL = re.compile(r".*vicon.*\.csv", re.IGNORECASE)
-
-
-@dataclass(frozen=True, eq=False)
-class LegCheck:
-    """One side of one recording: its strides, those with the device's orientation, its knee by segment and method."""
-
-    recording: str
-    side: Side
-    strides: StrideCheck
-    device_strides: StrideCheck | None
-    knees: Mapping[tuple[str, str], KneeCheck]
-    problems: tuple[Problem, ...] = field(default=())
 
 
 def fits(folder: Path) -> bool:
     """Whether a folder holds such a recording."""
-    return bool(_optical_files(folder)) and bool(_sensors(folder))
-
-
-def _optical_files(folder: Path) -> list[Path]:
-    return [path for path in files_in(folder) if _OPTICAL.fullmatch(path.name)]
-
-
-def _sensors(folder: Path) -> dict[str, Path]:
-    """Files by place (``left_thigh``): of a ``placement.json``, else by device."""
-    files = {path.name: path for path in files_in(folder)}
-    if PLACEMENT_FILE in files:
-        table = read_json(files[PLACEMENT_FILE])
-        return {
-            place.replace("knee", "shank"): files[name]
-            for place, name in table.items()
-            if isinstance(name, str) and name in files
-        }
-    sensors: dict[str, Path] = {}
-    for name, path in files.items():
-        place = DEVICES.get(device_in_name(name) or "")
-        if place is None or path.suffix.lower() != ".txt":
-            continue
-        if place in sensors:
-            raise InputError(
-                "placement_twice",
-                f"Two files are of the {place.replace('_', ' ')}: {sensors[place].name} and {name}.",
-                "Put each recording into a folder of its own.",
-                file=name,
-            )
-        sensors[place] = path
-    return sensors
-
-
-def read_optical(path: Path, recording: Recording, side: Side) -> dict[str, OpticalPath]:
-    """Optical points of one side by name (``KNEE``, ``MIDFOOT``); none where the file has not this side.
-
-    The file's ``row`` counts the rows of the sensor files, so the received samples; where samples were lost, the clock
-    knows better.
-    """
-    headings, values = read_csv(read_file(path))
-    names = headings[0]
-    letter = side.value[0].upper()
-    if f"{letter}FEO_1" not in names or "row" not in names:
-        return {}
-
-    def point(name: str) -> np.ndarray:
-        wanted = [f"{letter}{name}_{axis}" for axis in (1, 2, 3)]
-        missing = [one for one in wanted if one not in names]
-        if missing:
-            raise InputError("bad_truth", f"It has no column {missing[0]}.", "", file=path.name)
-        return values[:, [names.index(one) for one in wanted]]
-
-    placement = Placement.foot(side)
-    sensor = recording.sensors[placement]
-    rows = values[:, names.index("row")].astype(np.intp)
-    received = np.flatnonzero(sensor.received)
-    inside = (rows >= 0) & (rows < len(received))
-    time_s = recording.time_s(placement)[received[rows[inside]]]
-    middle = 0.5 * (point("TIO") + point("TOE"))
-    return {
-        "KNEE": OpticalPath(time_s, point("FEO")[inside]),
-        "MIDFOOT": OpticalPath(time_s, middle[inside]),
-    }
-
-
-def check_leg(folder: Path, optical_file: Path, side: Side) -> LegCheck | None:
-    """One side of a recording against its cameras; None where the file has not this side."""
-    sensors = _sensors(folder)
-    if f"{side}_foot" not in sensors:
-        return None
-    plain = _analysed(sensors, None)
-    optical = read_optical(optical_file, plain.recording, side)
-    if not optical:
-        return None
-    problems: list[Problem] = []
-    strides = check_strides(plain.gait.feet[side], optical["MIDFOOT"])
-    device = None
-    try:
-        settings = Settings(orientation=OrientationSource.DEVICE)
-        device = check_strides(_analysed(sensors, None, settings).gait.feet[side], optical["MIDFOOT"])
-    except InputError as error:
-        problems.append(Problem(f"{folder.name}: device's orientation", str(error)))
-    knees: dict[tuple[str, str], KneeCheck] = {}
-    for segment in SEGMENTS:
-        if f"{side}_{segment}" not in sensors:
-            problems.append(Problem(folder.name, f"There is no sensor on the {side} {segment}."))
-            continue
-        try:
-            knees |= _knees(sensors, side, segment, optical["KNEE"])
-        except InputError as error:
-            problems.append(Problem(f"{folder.name}: {side} {segment}", str(error)))
-    return LegCheck(folder.name, side, strides, device, knees, tuple(problems))
-
-
-def _analysed(sensors: Mapping[str, Path], segment: str | None, settings: Settings | None = None) -> Analysis:
-    """The analysis of both feet, with the sensors of one segment taken as the knees'."""
-    files = {Placement.foot(side): sensors.get(f"{side}_foot") for side in Side}
-    files |= {Placement.knee(side): sensors.get(f"{side}_{segment}") for side in Side}
-    placements = {placement: path for placement, path in files.items() if path is not None}
-    return analyze(read_recording(placements=placements), settings)
-
-
-def _knees(
-    sensors: Mapping[str, Path], side: Side, segment: str, optical: OpticalPath
-) -> dict[tuple[str, str], KneeCheck]:
-    """A segment's sensor as the knee, by each method; gait cycles are those of the first method for all."""
-    only = {place: path for place, path in sensors.items() if place.startswith(side)}
-    checks: dict[tuple[str, str], KneeCheck] = {}
-    cycles = None
-    for method in METHODS:
-        knee = _analysed(only, segment, Settings(method=method)).gait.knees[side].motion
-        if cycles is None:
-            cycles = (knee.cycle_start, knee.cycle_end)
-        check = check_knee(knee, *cycles, optical)
-        if check is None:
-            raise InputError("no_cycle", "No whole gait cycle lies within sight of the cameras.")
-        checks[segment, method] = check
-    return checks
+    return bool(optical_files(folder)) and any(path.suffix.lower() == ".txt" for path in files_in(folder))
 
 
 def validate(folder: Path) -> Table:
-    """Rows 1, 8 and 9."""
-    from gaitlab.validation.leg_vicon_rows import details_of, rows_of
-
+    """Rows 1, 8 and 9, of the folder and the folders directly in it."""
     homes = [one for one in folders_in(folder) if fits(one)]
     if not homes:
         raise not_this_set(NAME, folder, WANTED)
     legs: list[LegCheck] = []
     problems: list[Problem] = []
     for home in homes:
-        for optical in _optical_files(home):
+        for optical in optical_files(home):
+            name = f"{home.name}: {optical.name}"
             try:
                 found = [leg for side in Side if (leg := check_leg(home, optical, side))]
             except InputError as error:
-                problems.append(Problem(f"{home.name}: {optical.name}", str(error)))
+                problems.append(Problem(name, str(error)))
                 continue
             if not found:
-                problems.append(
-                    Problem(
-                        f"{home.name}: {optical.name}", "No side has both optical joints and a foot sensor."
-                    )
-                )
+                problems.append(Problem(name, "No side has both optical joints and a foot sensor."))
             legs += found
             problems += [problem for leg in found for problem in leg.problems]
     return Table(NAME, folder.name, len(homes), rows_of(legs), details_of(legs), tuple(problems))
+
+
+SET = KnownSet(NAME, WANTED, fits, validate)

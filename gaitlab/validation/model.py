@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 
 
 @dataclass(frozen=True)
@@ -121,3 +123,13 @@ class Table:
     def row(self, key: str) -> Row:
         """The row of that name."""
         return next(row for row in self.rows if row.key == key)
+
+
+@dataclass(frozen=True)
+class KnownSet:
+    """A set of public recordings: its name, what its files are called, whether a folder holds some, and its table."""
+
+    name: str
+    wanted: str
+    fits: Callable[[Path], bool]
+    validate: Callable[[Path], Table]

@@ -2,16 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from gaitlab.gait.measurement import TWO_SIDED_95
 from gaitlab.gait.strides import FootGait
 from gaitlab.recording.model import Bools, Floats
-from gaitlab.validation.model import Cell
+from gaitlab.validation.model import Cell, Column, Figure, Goal, Row
+from gaitlab.validation.statistics import CM, mean_absolute, mean_and_sd, share
 from gaitlab.validation.truth import OpticalPath
 
-NORMAL_95 = 1.959964
+STRIDE_COLUMNS = (
+    Column("recording"),
+    Column("side"),
+    Column("start", "s", 2),
+    Column("end", "s", 2),
+    Column("ours", "cm", 2),
+    Column("SD", "cm", 2),
+    Column("optical", "cm", 2),
+    Column("error", "cm", 2),
+    Column("covered"),
+    Column("turning"),
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,8 +38,10 @@ class StrideCheck:
         Instants in the two rests, as in the result.
     length_m, sd_m, optical_m : ndarray
         Ours, its standard uncertainty, and the optical one between the same instants.
-    turning, doubtful : ndarray of bool
+    turning : ndarray of bool
         As in the result.
+    marked : ndarray of bool
+        The analysis counts lost or saturated rows in it.
     """
 
     start_s: Floats
@@ -34,7 +50,7 @@ class StrideCheck:
     sd_m: Floats
     optical_m: Floats
     turning: Bools
-    doubtful: Bools
+    marked: Bools
 
     @property
     def error_m(self) -> Floats:
@@ -44,7 +60,7 @@ class StrideCheck:
     @property
     def covered(self) -> Bools:
         """The 95 % interval holds the optical length."""
-        return np.asarray(np.abs(self.error_m) <= NORMAL_95 * self.sd_m)
+        return np.asarray(np.abs(self.error_m) <= TWO_SIDED_95 * self.sd_m)
 
     def detail(self, k: int) -> tuple[Cell, ...]:
         """Stride ``k`` as cells: start, end, ours, SD, optical, error, covered, turning."""
@@ -71,5 +87,37 @@ def check_strides(foot: FootGait, optical: OpticalPath) -> StrideCheck:
         foot.length_sd_m[seen],
         truth[seen],
         foot.turning[seen],
-        foot.doubtful[seen],
+        np.asarray(foot.motion.doubtful_share[seen] > 0.0),
     )
+
+
+def length_row(
+    key: str,
+    what: str,
+    errors_m: Floats,
+    target: int | None = None,
+    goals: tuple[Goal, ...] = (),
+) -> Row:
+    """Errors of stride lengths."""
+    figures = (mean_absolute(errors_m, CM), *mean_and_sd(errors_m, CM))
+    return Row(key, what, figures, len(errors_m), "strides", target, goals)
+
+
+def coverage_row(key: str, checks: Sequence[StrideCheck]) -> Row:
+    """Row 8: how many of the 95 % intervals hold the optical length.
+
+    Below a hundred strides all of them may: the share that 99 % allow to miss is then less than one stride. Whether the
+    intervals are too wide shows in the errors divided by their standard uncertainties: their RMS should be 1.
+    """
+    covered = joined([check.covered.astype(np.float64) for check in checks])
+    ratio = joined([check.error_m / check.sd_m for check in checks])
+    rms = float(np.sqrt(np.mean(ratio**2))) if len(ratio) else float("nan")
+    figures = (share("covered", int(covered.sum()), len(covered)), Figure("RMS of error/SD", rms, "", 2))
+    high = 99.0 if len(covered) >= 100 else 100.0
+    what = "95 % interval of a stride length covers the optical one"
+    return Row(key, what, figures, len(covered), "strides", 8, (Goal("covered", low=90.0, high=high),))
+
+
+def joined(parts: Sequence[Floats]) -> Floats:
+    """All of them one after the other; empty for none."""
+    return np.concatenate(parts) if parts else np.zeros(0)

@@ -1,66 +1,18 @@
-"""Ten metres and back: what two feet say of the same walk, and events against those checked by hand.
-
-Voisard et al., IPOL 2023, article 497: ``S-T_lf.txt``, ``S-T_rf.txt``, ``S-T.json``; the events are packet counters.
-"""
+"""Ten metres and back: what two feet say of the same walk, and events against those checked by hand."""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
-from gaitlab.analysis import analyze
-from gaitlab.errors import InputError
-from gaitlab.gait.strides import FootGait
-from gaitlab.recording import Placement, Side, read_recording
-from gaitlab.recording.model import Floats, Recording
-from gaitlab.validation.folder import files_in, not_this_set, read_json
-from gaitlab.validation.model import Problem, Table
+from gaitlab.validation.folder import not_this_set
+from gaitlab.validation.model import KnownSet, Problem, Table
+from gaitlab.validation.ten_metres_details import details_of
+from gaitlab.validation.ten_metres_events import event_rows
+from gaitlab.validation.ten_metres_paths import path_rows, way_of
+from gaitlab.validation.ten_metres_trials import Trial, analysed_trials, feet_of, find_trials
 
 NAME = "10m-walk"
 WANTED = "S-T_lf.txt, S-T_rf.txt (one or both) and S-T.json of each trial"
-HALT_S = 0.5
-"""A step that begins within this time of a trial's last contact brings the feet together and belongs to the halt."""
-_FILE = re.compile(r"(.+-.+?)(?:_([lr])f\.txt|\.json)", re.IGNORECASE)
-_SUFFIX = {Side.LEFT: "l", Side.RIGHT: "r"}
-
-
-@dataclass(frozen=True)
-class TrialFiles:
-    """Files of one trial; a foot that was not recorded is missing."""
-
-    name: str
-    feet: Mapping[Side, Path]
-    truth: Path | None
-
-
-@dataclass(frozen=True, eq=False)
-class Labels:
-    """What was checked by hand, in seconds on the recording's clock.
-
-    Attributes
-    ----------
-    swings : mapping of ndarray (k, 2)
-        Foot off and initial contact of each swing of each foot. Some lie after the trial's end: steps out of it.
-    trial, turn : tuple of float
-        Boundaries of the trial and of the turn.
-    """
-
-    swings: Mapping[Side, Floats]
-    trial: tuple[float, float]
-    turn: tuple[float, float]
-
-
-@dataclass(frozen=True, eq=False)
-class Trial:
-    """One analysed trial."""
-
-    name: str
-    feet: Mapping[Side, FootGait]
-    labels: Labels
 
 
 def fits(folder: Path) -> bool:
@@ -68,77 +20,20 @@ def fits(folder: Path) -> bool:
     return any(trial.feet and trial.truth for trial in find_trials(folder))
 
 
-def find_trials(folder: Path) -> list[TrialFiles]:
-    """The trials of a folder, by the pattern of their names; subjects and trials in the order of their numbers."""
-    found: dict[str, dict[str, Path]] = {}
-    for path in files_in(folder):
-        if match := _FILE.fullmatch(path.name):
-            found.setdefault(match[1], {})[(match[2] or "truth").lower()] = path
-    return [
-        TrialFiles(
-            name,
-            {side: files[letter] for side, letter in _SUFFIX.items() if letter in files},
-            files.get("truth"),
-        )
-        for name, files in sorted(found.items(), key=lambda one: _number(one[0]))
-    ]
-
-
-def _number(name: str) -> list[tuple[int, str]]:
-    return [(int(part), "") if part.isdecimal() else (-1, part) for part in name.split("-")]
-
-
-def read_trial(files: TrialFiles) -> tuple[Recording, Labels]:
-    """One trial's recording and its labels."""
-    if not files.feet:
-        raise InputError("no_foot", "There is no file of a foot.", "", file=f"{files.name}.json")
-    if files.truth is None:
-        raise InputError("no_truth", "There is no file of events.", "", file=f"{files.name}.json")
-    recording = read_recording(placements={Placement.foot(side): path for side, path in files.feet.items()})
-    return recording, read_labels(files.truth, recording)
-
-
-def read_labels(path: Path, recording: Recording) -> Labels:
-    """Hand-checked events of a trial, from packets to seconds."""
-    table = read_json(path)
-
-    def seconds(key: str, shape: tuple[int, ...]) -> Floats:
-        try:
-            packets = np.array(table[key], dtype=np.float64).reshape(shape)
-        except (KeyError, TypeError, ValueError):
-            packets = np.array([np.nan])
-        if not np.isfinite(packets).all():
-            wanted = "pairs of packets" if len(shape) == 2 else "two packets"
-            raise InputError("bad_truth", f"{key} should hold {wanted}.", "", file=path.name)
-        return np.asarray((packets - recording.first_packet) / recording.rate_hz)
-
-    trial, turn = seconds("TrialBoundaries", (2,)), seconds("UTurnBoundaries", (2,))
-    swings = {side: seconds(f"{side.capitalize()}FootEvents", (-1, 2)) for side in Side}
-    return Labels(swings, (float(trial[0]), float(trial[1])), (float(turn[0]), float(turn[1])))
-
-
-def analysed_trials(folder: Path) -> Iterator[Trial | Problem]:
-    """Each trial of a folder analysed with default settings, or why not."""
-    for files in find_trials(folder):
-        try:
-            recording, labels = read_trial(files)
-            yield Trial(files.name, analyze(recording).gait.feet, labels)
-        except InputError as error:
-            yield Problem(files.name, str(error))
-            continue
-        for side in Side:
-            if side not in files.feet:
-                yield Problem(files.name, f"The {side} foot is missing; the other one counts.")
-
-
 def validate(folder: Path) -> Table:
     """Rows 3 to 7."""
-    from gaitlab.validation.ten_metres_rows import details_of, rows_of
-
     if not fits(folder):
         raise not_this_set(NAME, folder, WANTED)
     outcomes = list(analysed_trials(folder))
     trials = [one for one in outcomes if isinstance(one, Trial)]
-    problems = tuple(one for one in outcomes if isinstance(one, Problem))
-    n = len(find_trials(folder))
-    return Table(NAME, folder.name, n, rows_of(trials), details_of(trials), problems)
+    problems = [one for one in outcomes if isinstance(one, Problem)]
+    problems += [
+        Problem(trial.name, f"The {side} foot has fewer than two rests; it has no path.")
+        for trial, side, foot in feet_of(trials)
+        if way_of(foot, trial.labels, side) is None
+    ]
+    rows = (*path_rows(trials), *event_rows(trials))
+    return Table(NAME, folder.name, len(find_trials(folder)), rows, details_of(trials), tuple(problems))
+
+
+SET = KnownSet(NAME, WANTED, fits, validate)

@@ -32,7 +32,22 @@ def _row(row: Row) -> tuple[str, ...]:
     reached = {None: "", True: "yes", False: "no"}[row.reached]
     target = "" if row.target is None else str(row.target)
     goals = ", ".join(_goal(goal, row) for goal in row.goals)
-    return target, row.what, ", ".join(map(_figure, row.figures)), f"{row.n} {row.of}", goals, reached
+    of = row.of.removesuffix("s") if row.n == 1 else row.of
+    return target, row.what, ", ".join(_figures(row.figures)), f"{row.n} {of}", goals, reached
+
+
+def _figures(figures: Sequence[Figure]) -> list[str]:
+    """Each as ``MAE 0.84 cm``; a mean and the standard deviation after it as ``+0.21 ± 1.10 cm``."""
+    texts: list[str] = []
+    before: Figure | None = None
+    for one in figures:
+        if one.name == "SD" and before is not None and before.name == "mean":
+            mean = number(before.value, before.decimals, signed=True)
+            texts[-1] = f"{mean} ± {number(one.value, one.decimals)} {one.unit}"
+        else:
+            texts.append(_figure(one))
+        before = one
+    return texts
 
 
 def _figure(one: Figure) -> str:
