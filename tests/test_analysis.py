@@ -16,6 +16,11 @@ from gaitlab.recording import read_recording
 from gaitlab.recording.model import Placement, Recording, Side
 from gaitlab.result import Result
 from gaitlab.series import from_bytes, to_bytes, to_csv
+from gaitlab.validation.leg_vicon_check import read_optical
+from gaitlab.validation.optical import check_strides
+from gaitlab.validation.ten_metres_events import check_events
+from gaitlab.validation.ten_metres_paths import way_of
+from gaitlab.validation.ten_metres_trials import find_trials, read_trial
 from tests.walks import analysed, cut, out_and_back, turned, without
 
 LEG = {
@@ -193,78 +198,36 @@ def test_the_devices_orientation_is_refused_where_there_is_none(data_dir: Path) 
 
 def test_hand_checked_stance_and_swing_agree_within_2_percent_of_the_stride(data_dir: Path) -> None:
     """Mean over the trials of swing minus hand-checked swing, in seconds: no bias beyond a sample."""
-    differences = []
-    for path in sorted((data_dir / "mtw-10m-walk").glob("*-[15].json")):
-        recording = read_recording(placements={Placement.LEFT_FOOT: path.with_name(f"{path.stem}_lf.txt")})
-        foot = analyze(recording).gait.feet[Side.LEFT]
-        labels = (np.array(json.loads(path.read_text())["LeftFootEvents"]) - recording.first_packet) / 100.0
-        for off, contact in zip(foot.events.foot_off_s, foot.events.initial_contact_s, strict=True):
-            nearest = labels[np.abs(labels[:, 0] - off).argmin()]
-            if abs(nearest[0] - off) < 0.05 and abs(nearest[1] - contact) < 0.05:
-                differences.append((contact - off) - (nearest[1] - nearest[0]))
+    differences: list[float] = []
+    for files in find_trials(data_dir / "mtw-10m-walk"):
+        if files.name[-1] not in "15":
+            continue
+        recording, labels = read_trial(files)
+        off, contact = check_events(analyze(recording).gait.feet[Side.LEFT], labels, Side.LEFT)
+        swing = contact.error_s - off.error_s
+        differences += swing[np.isfinite(swing)].tolist()
     assert len(differences) > 200
     assert abs(np.mean(differences)) < 0.01
 
 
 def test_real_strides_agree_with_the_optical_foot_within_5_cm(data_dir: Path) -> None:
-    optical = np.genfromtxt(data_dir / "mtw-leg-vicon" / "vicon-left-leg.csv", delimiter=",", names=True)
-    middle = np.stack([0.5 * (optical[f"LTIO_{k}"] + optical[f"LTOE_{k}"]) for k in (1, 2)], axis=1)
-    foot = analyze(_leg(data_dir)).gait.feet[Side.LEFT]
-    rows = foot.motion.rests.moment - int(optical["row"][0])
-    errors = []
-    for k in range(len(foot)):
-        a, b = rows[k], rows[k + 1]
-        if a >= 0 and b < len(middle):
-            errors.append(foot.length_m[k] - np.linalg.norm(middle[b] - middle[a]))
+    recording = _leg(data_dir)
+    optical = read_optical(data_dir / "mtw-leg-vicon" / "vicon-left-leg.csv", recording, Side.LEFT)
+    errors = check_strides(analyze(recording).gait.feet[Side.LEFT], optical["MIDFOOT"]).error_m
     assert len(errors) >= 5
     assert np.abs(errors).max() < 0.05
     assert np.abs(np.mean(errors)) < 0.02
 
 
-def test_every_trial_of_ten_metres_and_back_is_analysed_and_comes_back(data_dir: Path) -> None:
-    """46 trials, up to a quarter of the samples lost; each way is about 10 m and the feet end near where they began."""
-    closing, distances = [], []
-    for path in sorted((data_dir / "mtw-10m-walk").glob("*.json")):
-        files = {
-            Placement.LEFT_FOOT: path.with_name(f"{path.stem}_lf.txt"),
-            Placement.RIGHT_FOOT: path.with_name(f"{path.stem}_rf.txt"),
-        }
-        recording = read_recording(placements=files)
+def test_every_trial_of_ten_metres_and_back_is_a_walk_with_a_turn(data_dir: Path) -> None:
+    """46 trials, up to a quarter of the samples lost; each way is about 10 m."""
+    ways = []
+    for files in find_trials(data_dir / "mtw-10m-walk"):
+        recording, labels = read_trial(files)
         analysis = analyze(recording, Settings(course_m=7.62))
-        walked = json.loads(path.read_text())["TrialBoundaries"][1] + 40 - recording.first_packet
-        for foot in analysis.gait.feet.values():
-            row = int(np.searchsorted(foot.motion.time_s, walked / recording.rate_hz))
-            place = foot.motion.position_m[min(row, foot.motion.n_samples - 1), :2]
-            closing.append(float(np.linalg.norm(place - foot.motion.position_m[0, :2])))
-            distances.append(float(foot.length_m[foot.end_s <= walked / recording.rate_hz + 1].sum()))
-        assert analysis.result.walk.turns, path.stem
-        assert "not_one_walk" not in [warning.code for warning in analysis.result.warnings], path.stem
+        ways += [way_of(foot, labels, side) for side, foot in analysis.gait.feet.items()]
+        assert analysis.result.walk.turns, files.name
+        assert "not_one_walk" not in [warning.code for warning in analysis.result.warnings], files.name
         assert analysis.result.parameter("walk_time") is not None
-    assert len(closing) == 92
-    assert np.median(closing) < 0.40
-    assert np.percentile(closing, 95) < 0.80
-    assert np.median(distances) == pytest.approx(20.0, abs=1.0)
-
-
-def test_hand_checked_events_are_found(data_dir: Path) -> None:
-    """Within 50 ms: at least 93 % of foot off and of initial contact, turn and last step included."""
-    found = {"off": 0, "contact": 0}
-    labelled = 0
-    for path in sorted((data_dir / "mtw-10m-walk").glob("*.json")):
-        labels = json.loads(path.read_text())
-        for side, key, suffix in ((Side.LEFT, "LeftFootEvents", "lf"), (Side.RIGHT, "RightFootEvents", "rf")):
-            recording = read_recording(
-                placements={Placement.foot(side): path.with_name(f"{path.stem}_{suffix}.txt")}
-            )
-            events = analyze(recording).gait.feet[side].events
-            truth = (np.array(labels[key]) - recording.first_packet) / recording.rate_hz
-            labelled += len(truth)
-            for name, ours, column in (
-                ("off", events.foot_off_s, 0),
-                ("contact", events.initial_contact_s, 1),
-            ):
-                distance = np.abs(truth[:, column, None] - ours[None, :]).min(axis=1)
-                found[name] += int(np.sum(distance <= 0.0501))
-    assert labelled == 1615
-    assert found["off"] >= 0.93 * labelled
-    assert found["contact"] >= 0.93 * labelled
+    assert len(ways) == 92
+    assert np.median([way.out_and_back_m for way in ways if way]) == pytest.approx(20.0, abs=1.0)

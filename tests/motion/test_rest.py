@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
-import json
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -23,6 +20,8 @@ from gaitlab.recording import read_recording
 from gaitlab.recording.model import Placement, Side
 from gaitlab.simulation import TYPICAL_MTW, Plan, Stand, Turn, Walk, simulate
 from gaitlab.simulation.walk import Gait
+from gaitlab.validation.ten_metres_events import check_stances
+from gaitlab.validation.ten_metres_trials import find_trials, read_trial
 from tests.walks import out_and_back, turned
 
 
@@ -90,32 +89,20 @@ def test_the_gait_cycle_of_a_sine_is_its_period() -> None:
     assert cycle_time(rate, 100.0) == pytest.approx(1.25, abs=0.02)
 
 
-def _trials(data_dir: Path) -> Iterator[tuple[Path, Placement, str]]:
-    for events in sorted((data_dir / "mtw-10m-walk").glob("*.json")):
-        yield events, Placement.LEFT_FOOT, "LeftFootEvents"
-        yield events, Placement.RIGHT_FOOT, "RightFootEvents"
-
-
 def test_real_feet_have_one_rest_in_every_hand_checked_stance(data_dir: Path) -> None:
     """1,523 stances: at most 1 % without a rest, at most 1 % of the short ones with two; none of the swings but 1 %."""
-    stances = missed = doubled = swings = false = 0
-    for path, placement, key in _trials(data_dir):
-        suffix = "lf" if placement is Placement.LEFT_FOOT else "rf"
-        file = path.with_name(f"{path.stem}_{suffix}.txt")
-        sensor = read_recording(placements={placement: file}).sensors[placement]
-        foot = track_foot(sensor, np.arange(sensor.n_samples) / sensor.rate_hz)
-        packets = sensor.first_packet + foot.rests.moment
-        events = np.array(json.loads(path.read_text())[key])
-        for (_, contact), (off, _) in itertools.pairwise(events):
-            n = int(np.sum((packets >= contact) & (packets <= off)))
-            stances, missed = stances + 1, missed + (n == 0)
-            doubled += n > 1 and off - contact < 130  # a longer one holds steps that were not labelled
-        for off, contact in events:
-            swings, false = swings + 1, false + bool(np.any((packets > off + 3) & (packets < contact - 3)))
+    checks = []
+    for files in find_trials(data_dir / "mtw-10m-walk"):
+        recording, labels = read_trial(files)
+        for placement, sensor in recording.sensors.items():
+            foot = track_foot(sensor, recording.time_s(placement))
+            moments = foot.time_s[foot.rests.moment]
+            checks.append(check_stances(moments, labels.swings[placement.side]))
+    stances = sum(check.stances for check in checks)
     assert stances == 1523
-    assert missed <= 0.01 * stances
-    assert doubled <= 0.01 * stances
-    assert false <= 0.01 * swings
+    assert sum(check.missed for check in checks) <= 0.01 * stances
+    assert sum(check.doubled for check in checks) <= 0.01 * stances
+    assert sum(check.false for check in checks) <= 0.01 * sum(check.swings for check in checks)
 
 
 def test_a_foot_comes_to_rest_and_a_shank_does_not(data_dir: Path) -> None:
