@@ -30,7 +30,7 @@ class FootGait:
     common_sd : float
         Part of the relative uncertainty of the lengths that all strides share (scale).
     turning, walking : ndarray of bool
-        The foot turns in the stride; the stride belongs to a walk.
+        The foot turns in the stride; the stride belongs to a walk (a turn on the spot does not).
     bout, part : ndarray of int
         Which bout and which straight part it belongs to; −1 for none.
     steady : ndarray of bool
@@ -78,9 +78,11 @@ def foot_gait(motion: FootMotion, course: Course, common_sd: float) -> FootGait:
     """Strides of a foot on a course."""
     length = np.linalg.norm(np.diff(motion.rest_position_m, axis=0)[:, :2], axis=1)
     start, end = _bounds(motion)
+    events = find_events(motion)
     if len(length):
         swings = Swings.of(motion, CourseParams())
-        turning, walking, middle = swings.turning, swings.walking, swings.middle_s
+        turning, middle = swings.turning, swings.middle_s
+        walking = swings.walking & ~events.on_the_spot
     else:
         turning = walking = np.zeros(0, dtype=np.bool_)
         middle = np.zeros(0)
@@ -92,7 +94,7 @@ def foot_gait(motion: FootMotion, course: Course, common_sd: float) -> FootGait:
     few_straight = not steady.any()
     return FootGait(
         motion,
-        find_events(motion),
+        events,
         start,
         end,
         length,

@@ -37,6 +37,19 @@ def rotate(q: Floats, v: Floats) -> Floats:
     return result
 
 
+def matrices(q: Floats) -> Floats:
+    """Rotation matrices of unit quaternions, shape (n, 4) → (n, 3, 3): world from sensor."""
+    w, x, y, z = q.T
+    matrix = np.empty((len(q), 3, 3))
+    matrix[:, 0, 0] = 1.0 - 2.0 * (y * y + z * z)
+    matrix[:, 1, 1] = 1.0 - 2.0 * (x * x + z * z)
+    matrix[:, 2, 2] = 1.0 - 2.0 * (x * x + y * y)
+    matrix[:, 0, 1], matrix[:, 1, 0] = 2.0 * (x * y - w * z), 2.0 * (x * y + w * z)
+    matrix[:, 0, 2], matrix[:, 2, 0] = 2.0 * (x * z + w * y), 2.0 * (x * z - w * y)
+    matrix[:, 1, 2], matrix[:, 2, 1] = 2.0 * (y * z - w * x), 2.0 * (y * z + w * x)
+    return matrix
+
+
 def turn_to_left(v: Floats, yaw_rad: float) -> Floats:
     """Turn vectors, shape (n, 3), about the vertical by ``yaw_rad``, positive to the left seen from above."""
     c, s = np.cos(yaw_rad), np.sin(yaw_rad)

@@ -1,0 +1,121 @@
+"""Toe and heel of a foot, found from how it rolls, and how fast each of them moves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from gaitlab.motion.model import FootMotion, Indices
+from gaitlab.motion.quaternions import matrices
+from gaitlab.motion.windows import Windows
+from gaitlab.recording.model import Floats
+
+
+@dataclass(frozen=True)
+class SoleParams:
+    """How toe and heel are found.
+
+    Attributes
+    ----------
+    roll_share : float
+        Only rolls at least this share as fast as the median one tell where the foot rolls over.
+    slap_s : float
+        The foot rolls over the heel from the fastest slap of the forefoot until this much later, when it lies flat.
+    damping : float
+        Share of the mean squared rotation that keeps the point near the sensor along the axis of the roll, along which
+        it is not seen.
+    """
+
+    roll_share: float = 0.5
+    slap_s: float = 0.06
+    damping: float = 0.01
+
+
+@dataclass(frozen=True, eq=False)
+class Swings:
+    """How a foot moves from rest to rest, rows and one entry a swing, shape (m,), or one a row, shape (n,).
+
+    Attributes
+    ----------
+    whole, before, after : Windows
+        From rest to rest, up to the fastest row and from it on.
+    peak : ndarray (m,)
+        Row in which the sensor is fastest.
+    push, slap : ndarray (m,)
+        Row of the fastest pitching forward before and after it: the heel's rise and the forefoot's fall.
+    speed_mps, toe_mps, heel_mps : ndarray (n,)
+        Speed of the sensor, of the point over which the foot rolls off, and of that over which it rolls on.
+    pitch_radps : ndarray (n,)
+        Rate about the foot's own lateral axis, positive when the toe goes down. A row is the mean over the interval
+        that ends with it, so it belongs half a row earlier.
+    """
+
+    whole: Windows
+    before: Windows
+    after: Windows
+    peak: Indices
+    push: Indices
+    slap: Indices
+    speed_mps: Floats
+    toe_mps: Floats
+    heel_mps: Floats
+    pitch_radps: Floats
+
+    @classmethod
+    def of(cls, foot: FootMotion, params: SoleParams | None = None) -> Self:
+        """Swings of a foot with at least two rests.
+
+        The lateral axis is the one about which the foot turns most, in the sensor's frame, so a foot that turns the
+        corner keeps its own. Toe and heel are the points of the foot that stay where they are while it rolls off and
+        on: the r that minimises Σ|v + ω×r|² over those rows. Ours; no mounting, no length of foot is assumed.
+        """
+        p = params or SoleParams()
+        rests = foot.rests
+        to_sensor = matrices(foot.attitude)
+        rate = np.einsum("nij,ni->nj", to_sensor, foot.rate_radps)
+        velocity = np.einsum("nij,ni->nj", to_sensor, foot.velocity_mps)
+        speed = np.sqrt(np.einsum("ij,ij->i", velocity, velocity))
+        whole = Windows(rests.moment[:-1], np.maximum(rests.moment[1:] + 1, rests.moment[:-1] + 2))
+        peak = whole.highest(speed)
+        before, after = Windows(whole.start, peak + 1), Windows(peak, whole.end)
+        pitch = rate @ _lateral_axis(rate, to_sensor, foot.velocity_mps)
+        push, slap = before.highest(pitch), after.highest(pitch)
+
+        def point_speed(first: Indices, last: Indices, of: Indices) -> Floats:
+            fast = pitch[of] >= p.roll_share * np.median(pitch[of])
+            rows = Windows(first[fast], last[fast]).rows
+            point = velocity + rate @ _cross_matrix(_still_point(rate[rows], velocity[rows], p.damping)).T
+            return np.asarray(np.sqrt(np.einsum("ij,ij->i", point, point)))
+
+        toe = point_speed(whole.start, push + 1, push)
+        flat = np.minimum(slap + max(1, round(p.slap_s * foot.rate_hz)), whole.end)
+        heel = point_speed(slap, flat, slap)
+        return cls(whole, before, after, peak, push, slap, speed, toe, heel, pitch)
+
+
+def _lateral_axis(rate: Floats, to_sensor: Floats, velocity_mps: Floats) -> Floats:
+    """Unit vector to the left of the foot in the sensor's frame: the axis of most of its turning, with the way it
+    walks ahead."""
+    axis: Floats = np.linalg.eigh(rate.T @ rate)[1][:, -1]
+    to_left = to_sensor[:, :2] @ axis
+    ahead = float(velocity_mps[:, 0] @ to_left[:, 1] - velocity_mps[:, 1] @ to_left[:, 0])
+    return axis if ahead >= 0.0 else -axis
+
+
+def _still_point(rate: Floats, velocity: Floats, damping: float) -> Floats:
+    """Point of a rigid body, from the sensor, that moves least over these rows; the sensor itself where it does not
+    turn."""
+    outer, mixed = rate.T @ rate, rate.T @ velocity
+    turning = float(np.trace(outer))
+    if turning <= 0.0:
+        return np.zeros(3)
+    normal = (turning + damping * turning) * np.eye(3) - outer
+    moment = np.array([mixed[1, 2] - mixed[2, 1], mixed[2, 0] - mixed[0, 2], mixed[0, 1] - mixed[1, 0]])
+    return np.asarray(np.linalg.solve(normal, moment))
+
+
+def _cross_matrix(r: Floats) -> Floats:
+    """The matrix M with M ω = ω × r."""
+    return np.array([[0.0, r[2], -r[1]], [-r[2], 0.0, r[0]], [r[1], -r[0], 0.0]])
