@@ -124,21 +124,17 @@ def validate(folder: Path) -> Table:
 
 
 def _rows(loops: list[Loop]) -> tuple[Row, ...]:
-    """The worst of the loops stands for them all."""
-    if not loops:
-        return ()
-    worst = max(loops, key=lambda loop: loop.closing_m)
+    return tuple(_row(loop) for loop in loops)
+
+
+def _row(loop: Loop) -> Row:
     figures = (
-        figure("3D", worst.closing_m, M),
-        figure("horizontal", worst.horizontal_m, M),
-        figure("path", worst.path_m, M),
+        figure("3D", loop.closing_m, M),
+        figure("horizontal", loop.horizontal_m, M),
+        figure("path", loop.path_m, M),
     )
-    what = (
-        "closing error of the loop"
-        if len(loops) == 1
-        else f"closing error of the worst loop, {worst.recording}"
-    )
-    return (Row("loop", what, figures, len(loops), "loops", 10, (Goal("3D", high=0.1),)),)
+    what = f"closing error of the loop, {loop.recording}"
+    return Row(f"loop_{loop.recording}", what, figures, loop.rests, "rests", 10, (Goal("3D", high=0.1),))
 
 
 def _details(loops: list[Loop]) -> Details:

@@ -109,10 +109,10 @@ def read_optical(path: Path, recording: Recording, side: Side) -> dict[str, Opti
 
     placement = Placement.foot(side)
     sensor = recording.sensors[placement]
-    rows = values[:, names.index("row")].astype(np.intp)
+    rows = values[:, names.index("row")]
     received = np.flatnonzero(sensor.received)
     inside = (rows >= 0) & (rows < len(received))
-    time_s = recording.time_s(placement)[received[rows[inside]]]
+    time_s = recording.time_s(placement)[received[rows[inside].astype(np.intp)]]
     middle = 0.5 * (point("TIO") + point("TOE"))
     return {
         "KNEE": OpticalPath(time_s, point("FEO")[inside]),

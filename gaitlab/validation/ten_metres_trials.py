@@ -42,9 +42,10 @@ class Labels:
     Attributes
     ----------
     swings : mapping of ndarray (k, 2)
-        Foot off and initial contact of each swing of each foot. Some lie after the trial's end: steps out of it.
+        Foot off and initial contact of each swing of each foot that was recorded. Some lie after the trial's end: steps
+        out of it.
     trial, turn : tuple of float
-        Boundaries of the trial and of the turn.
+        Boundaries of the trial and of the turn; NaN where there is no turn.
     """
 
     swings: Mapping[Side, Floats]
@@ -105,8 +106,10 @@ def read_labels(path: Path, recording: Recording) -> Labels:
             raise InputError("bad_truth", f"{key} should hold {wanted}.", "", file=path.name)
         return np.asarray((packets - recording.first_packet) / recording.rate_hz)
 
-    trial, turn = seconds("TrialBoundaries", (2,)), seconds("UTurnBoundaries", (2,))
-    swings = {side: seconds(f"{side.capitalize()}FootEvents", (-1, 2)) for side in Side}
+    trial = seconds("TrialBoundaries", (2,))
+    turn = seconds("UTurnBoundaries", (2,)) if "UTurnBoundaries" in table else np.full(2, np.nan)
+    sides = [placement.side for placement in recording.sensors]
+    swings = {side: seconds(f"{side.capitalize()}FootEvents", (-1, 2)) for side in sides}
     return Labels(swings, (float(trial[0]), float(trial[1])), (float(turn[0]), float(turn[1])))
 
 

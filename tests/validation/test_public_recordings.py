@@ -67,7 +67,7 @@ def test_no_trial_and_no_labelled_event_of_ten_metres_is_left_out(data_dir: Path
         ("leg-vicon", "stride_length_device", "MAE", 1.3),
         ("leg-vicon", "knee_shank_gaitlab", "3D RMS", 4.5),
         ("foot-mocap", "stride_length_heel", "MAE", 5.5),
-        ("foot-loop", "loop", "horizontal", 0.1),
+        ("foot-loop", "loop_short_walk", "horizontal", 0.1),
     ],
 )
 def test_no_error_is_larger_than_it_was(

@@ -165,7 +165,7 @@ def test_a_loop_is_laid_on_its_clock_and_measured(tmp_path: Path) -> None:
     assert sensor.n_lost == len(range(500, true.n_samples, 97))
     table = validate("foot-loop", folder)
     distance = folders.walk().truth.feet[Side.LEFT].distance_m
-    assert table.row("loop").value("path") == pytest.approx(distance, rel=0.03)
+    assert table.row("loop_loop").value("path") == pytest.approx(distance, rel=0.03)
 
 
 def test_times_of_reception_become_packets() -> None:
@@ -199,3 +199,17 @@ def test_all_sets_of_a_folder_are_found_by_what_they_hold(tmp_path: Path) -> Non
     empty.mkdir()
     with pytest.raises(InputError, match="No folder in it holds a known set"):
         validate_all(empty)
+
+
+def test_labels_of_a_foot_that_was_not_recorded_and_of_a_turn_may_be_missing(tmp_path: Path) -> None:
+    folder = folders.ten_metres(tmp_path, "1-1")
+    truth = json.loads((folder / "1-1.json").read_text())
+    n = len(truth.pop("LeftFootEvents"))
+    del truth["UTurnBoundaries"]
+    (folder / "1-1.json").write_text(json.dumps(truth))
+    assert "LeftFootEvents" in validate("10m-walk", folder).problems[0].reason
+    (folder / "1-1_lf.txt").unlink()
+    table = validate("10m-walk", folder)
+    assert table.row("initial_contact").n == len(truth["RightFootEvents"])
+    assert abs(n - len(truth["RightFootEvents"])) <= 1
+    assert table.row("initial_contact_turn").n == 0
