@@ -1,60 +1,68 @@
-"""How a knee moved: it never rests, so its path is tied to its foot's in every gait cycle."""
+"""How a knee moved: it never rests, so its path is tied to its foot's by the leg between them."""
 
 from __future__ import annotations
 
-import itertools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import solveh_banded
 
 from gaitlab.motion import ikizoglu2018
-from gaitlab.motion.foot import method_motion
+from gaitlab.motion.drift import DriftCurve
+from gaitlab.motion.free import method_motion
 from gaitlab.motion.integration import position_of
-from gaitlab.motion.model import FootMotion, Indices, KneeMotion, Motion
+from gaitlab.motion.leg import Pair, RigidFit, RigidParams, fit_rigid_link
+from gaitlab.motion.model import FootMotion, Indices, KneeMotion, LegLink, LegPlace, Motion
 from gaitlab.motion.orientation import OrientationSource
+from gaitlab.motion.thigh import TwoLinkFit, fit_two_links
 from gaitlab.recording.model import Floats, Sensor
 
 
 @dataclass(frozen=True)
 class KneeParams:
-    """Weights of the knee's correction.
+    """How a knee is tied to its foot.
 
     Attributes
     ----------
-    step_sd_m : float
-        How far the knee's displacement in a gait cycle may lie from the foot's step length in mid-walk; measured
-        against optical knees: 0.02.
-    edge_step_sd_m : float
-        The same for the first and the last cycle, where the person starts from and comes to standing: measured
-        0.05–0.16.
-    drift_mps2 : float
-        Acceleration error that lasts about a second: what a tilt of half a degree makes of gravity.
-    standing_margin_s : float
-        A standing knee is taken to be still until this long before its foot leaves the ground.
-    standing_velocity_sd_mps : float
-        How still.
+    accel_density_m2ps3 : float
+        Acceleration error of the knee's own path as white noise: 0.08 m/s² for a second, what a tilt of half a degree
+        makes of gravity.
+    spacing_s : float
+        The leg is looked at so often.
+    sure_share : float
+        A rigid link that leaves less than this share of the foot's movement needs no second look: it is a shank. In
+        ``mtw-leg-vicon`` four sensors on shanks leave 0.06–0.07, two on thighs 0.26–0.29.
+    most_share : float
+        One that leaves more is no shank of this leg: shanks of simulated walks leave 0.05–0.14 (the most when they
+        walk fast), those of the other leg 0.35–0.51 there and 0.44–0.45 in ``mtw-leg-vicon``.
+    gain : float
+        Between them two links decide, where they leave less by at least this factor: 3.8 and 4.2 for the two thighs,
+        at most 1.1 for every shank, real or simulated.
+    thigh_share : float
+        Two links that leave more than this share are no thigh of this leg: 0.07 for the thighs. The other thigh leaves
+        0.14, the pelvis 0.12, and the knee would be above the sensor.
+    loose_sd_m : float
+        What is neither follows its foot so loosely, over seconds.
     """
 
-    step_sd_m: float = 0.02
-    edge_step_sd_m: float = 0.1
-    drift_mps2: float = 0.08
-    standing_margin_s: float = 0.8
-    standing_velocity_sd_mps: float = 0.02
+    accel_density_m2ps3: float = 0.0064
+    spacing_s: float = 0.1
+    sure_share: float = 0.09
+    most_share: float = 0.22
+    gain: float = 2.0
+    thigh_share: float = 0.12
+    loose_sd_m: float = 0.05
 
 
 @dataclass(frozen=True, eq=False)
 class Cycles:
     """Gait cycles of a foot in the rows of its knee: from leaving one rest to leaving the next.
 
-    ``start``, ``end`` (m,) rows; ``step_m`` (m, 3) the foot's displacement; ``edge`` (m,) True for the first and
-    last.
+    ``start``, ``end`` (m,) rows; ``step_m`` (m, 3) the foot's displacement.
     """
 
     start: Indices
     end: Indices
     step_m: Floats
-    edge: Floats
 
     def __len__(self) -> int:
         return len(self.start)
@@ -71,111 +79,7 @@ def cycles_of(foot: FootMotion, n_rows: int, shift: int) -> Cycles:
     steps = np.diff(foot.rest_position_m, axis=0)
     start, end = leaving[:-1], leaving[1:]
     inside = (start >= 0) & (end < n_rows) & (end > start)
-    edge = np.zeros(len(start))
-    if len(edge):
-        edge[[0, -1]] = 1.0
-    return Cycles(start[inside], end[inside], steps[inside], edge[inside])
-
-
-def heading_against_foot(
-    raw_position_m: Floats, cycles: Cycles, standing: list[tuple[int, int]], rate_hz: float
-) -> float:
-    """Angle in radians by which the knee's horizontal axes must be turned to the left to agree with its foot's.
-
-    From cycle to cycle knee and foot change their mean velocity alike: at the start, in a turn, at the stop. With the
-    horizontal plane as complex numbers and Δ from one cycle to the next, ΔV_foot = z·ΔV_knee + b·Δt, b a constant
-    drift; the angle is that of z. It needs no magnetometer and holds for any place on the leg. Standing spans count
-    as cycles of no movement.
-    """
-    spans = [(a, b, 0j) for a, b in standing]
-    spans += [
-        (int(a), int(b), complex(s[0], s[1]))
-        for a, b, s in zip(cycles.start, cycles.end, cycles.step_m, strict=True)
-    ]
-    spans.sort(key=lambda span: span[0])
-    first, last, step = (np.array(column) for column in zip(*spans, strict=True))
-    plane = raw_position_m[:, 0] + 1j * raw_position_m[:, 1]
-    duration = (last - first) / rate_hz
-    knee, foot = (plane[last] - plane[first]) / duration, step / duration
-    middle = 0.5 * (first + last) / rate_hz
-    design = np.stack([np.diff(knee), np.diff(middle).astype(complex)], axis=1)
-    if len(design) < 2:
-        return float(np.angle(np.sum(foot * np.conj(knee))))
-    z = np.linalg.lstsq(design, np.diff(foot), rcond=None)[0][0]
-    return float(np.angle(z))
-
-
-def standing_spans(foot: FootMotion, n_rows: int, shift: int, params: KneeParams) -> list[tuple[int, int]]:
-    """Rows ``[start, end]`` of each second in which the person stands before the first and after the last cycle."""
-    rate_hz = foot.rate_hz
-    margin, second = round(params.standing_margin_s * rate_hz), round(rate_hz)
-    rests = foot.rests
-    spans = []
-    for start, end in (
-        (rests.start[0], rests.end[0] - margin),
-        (rests.start[-1] + margin, rests.end[-1]),
-    ):
-        low, high = max(0, int(start) + shift), min(n_rows - 1, int(end) + shift)
-        n_seconds = (high - low) // second
-        if n_seconds < 1:
-            continue
-        borders = np.linspace(low, high, n_seconds + 1).round().astype(int)
-        spans += [(int(x), int(y)) for x, y in itertools.pairwise(borders)]
-    return spans
-
-
-def correct_velocity(
-    raw_velocity_mps: Floats,
-    cycles: Cycles,
-    standing: list[tuple[int, int]],
-    rate_hz: float,
-    params: KneeParams,
-) -> Floats:
-    """Knee velocity whose drift, linear between the cycles' borders, is the likeliest under three statements.
-
-    The knee goes as far in each cycle as its foot (loosely in the first and last), it is still while the person
-    stands, and the drift changes slowly. A banded least-squares problem in the drift at the borders, solved once
-    for all axes.
-
-    Source: the statement is İkizoğlu et al. 2018, §3.3. Deviations: the drift is continuous instead of constant per
-    cycle, edge cycles count less, standing is used.
-    """
-    borders = np.unique(
-        np.concatenate([cycles.start, cycles.end, [row for span in standing for row in span]])
-    )
-    at = {int(row): k for k, row in enumerate(borders)}
-    raw_position = position_of(raw_velocity_mps, rate_hz)
-    n = len(borders)
-    band, right = np.zeros((2, n)), np.zeros((n, 3))
-
-    def add(i: int, j: int, ci: float, cj: float, value: Floats | float, sd: float) -> None:
-        weight = 1.0 / sd**2
-        band[1, i] += weight * ci * ci
-        band[1, j] += weight * cj * cj
-        band[0, j] += weight * ci * cj
-        right[i] += weight * ci * value
-        right[j] += weight * cj * value
-
-    steps = np.diff(borders) / rate_hz
-    for k, duration in enumerate(steps):
-        add(k, k + 1, -1.0, 1.0, 0.0, params.drift_mps2 * float(duration))
-    for start, end, step, edge in zip(cycles.start, cycles.end, cycles.step_m, cycles.edge, strict=True):
-        i, j = at[int(start)], at[int(end)]
-        excess = raw_position[end] - raw_position[start] - step
-        sd = params.edge_step_sd_m if edge else params.step_sd_m
-        if j == i + 1:
-            half = 0.5 * float(steps[i])
-            add(i, j, half, half, excess, sd)
-    for start, end in standing:
-        for row in (start, end):
-            k = at[int(row)]
-            weight = 1.0 / params.standing_velocity_sd_mps**2
-            band[1, k] += weight
-            right[k] += weight * raw_velocity_mps[row]
-    drift = solveh_banded(band, right)
-    rows = np.arange(len(raw_velocity_mps))
-    taken: Floats = np.stack([np.interp(rows, borders, drift[:, k]) for k in range(3)], axis=1)
-    return raw_velocity_mps - taken
+    return Cycles(start[inside], end[inside], steps[inside])
 
 
 def track_knee(
@@ -191,31 +95,63 @@ def track_knee(
     Parameters
     ----------
     sensor : Sensor
-        Of the knee (or anywhere on shank or thigh).
+        Of the knee: anywhere on shank or thigh.
     foot : FootMotion
         Of the same side.
     shift : int
         Knee row = foot row + shift.
     method : str
-        ``gaitlab``, or ``ikizoglu2018`` for a constant velocity offset per cycle.
+        ``gaitlab``: the leg joins knee and foot all the time (``leg.py``, ``thigh.py``). ``ikizoglu2018``: a constant
+        velocity offset per cycle, its heading that of a rigid link.
+
+    Source: İkizoğlu et al. 2018, §3.3, tie the knee to its foot once in a gait cycle. Deviation: all the time, by the
+    geometry of the leg, which is estimated.
     """
     free = method_motion(sensor, time_s, method, source)
-    params = KneeParams()
     cycles = cycles_of(foot, free.n_samples, shift)
     if not len(cycles):
-        return _knee_motion(free, free.raw_velocity_mps, cycles)
-    standing = standing_spans(foot, free.n_samples, shift, params)
-    yaw = heading_against_foot(free.raw_position_m, cycles, standing, free.rate_hz)
-    free = free.turned(yaw)
+        return _knee_motion(free, free.raw_velocity_mps, free.raw_position_m, cycles, None)
+    curve, fit, link = join_to_foot(free, foot, shift)
+    free = free.turned(fit.yaw_rad)
     if method == "ikizoglu2018":
         pairs = [(int(a), int(b)) for a, b in zip(cycles.start, cycles.end, strict=True)]
         velocity = ikizoglu2018.correct_knee(free.raw_velocity_mps, pairs, cycles.step_m, free.rate_hz)
-        return _knee_motion(free, velocity, cycles)
-    velocity = correct_velocity(free.raw_velocity_mps, cycles, standing, free.rate_hz, params)
-    return _knee_motion(free, velocity, cycles, velocity[cycles.start])
+        return _knee_motion(free, velocity, position_of(velocity, free.rate_hz), cycles, link)
+    drift, slope = curve.position_and_velocity(fit.drift)
+    velocity = free.raw_velocity_mps - slope
+    return _knee_motion(free, velocity, free.raw_position_m - drift, cycles, link, velocity[cycles.start])
 
 
-def _knee_motion(free: Motion, velocity: Floats, cycles: Cycles, started: Floats | None = None) -> KneeMotion:
+def join_to_foot(
+    free: Motion, foot: FootMotion, shift: int, params: KneeParams | None = None
+) -> tuple[DriftCurve, RigidFit | TwoLinkFit, LegLink]:
+    """The drift of a leg sensor against its foot, by the link that the data show: shank, thigh, or neither."""
+    p = params or KneeParams()
+    first = max(0, int(foot.rests.start[0]) + shift)
+    last = min(free.n_samples, int(foot.rests.end[-1]) + shift) - 1
+    curve = DriftCurve.over(first, last, free.n_samples, free.rate_hz, p.spacing_s, p.accel_density_m2ps3)
+    pair = Pair.of(free, foot, shift, curve, RigidParams().sd_m)
+    rigid = fit_rigid_link(pair, curve)
+    if rigid.unexplained < p.sure_share:
+        return curve, rigid, LegLink(LegPlace.SHANK, rigid.unexplained)
+    two = fit_two_links(pair, curve, rigid)
+    gain = rigid.misfit / max(two.misfit, 1e-9)
+    if gain > p.gain and rigid.unexplained < gain * p.thigh_share and two.plausible:
+        return curve, two, LegLink(LegPlace.THIGH, rigid.unexplained / gain)
+    if rigid.unexplained < p.most_share:
+        return curve, rigid, LegLink(LegPlace.SHANK, rigid.unexplained)
+    loose = fit_rigid_link(pair, curve, replace(RigidParams(), sd_m=p.loose_sd_m))
+    return curve, loose, LegLink(LegPlace.UNKNOWN, rigid.unexplained)
+
+
+def _knee_motion(
+    free: Motion,
+    velocity: Floats,
+    position: Floats,
+    cycles: Cycles,
+    link: LegLink | None,
+    started: Floats | None = None,
+) -> KneeMotion:
     """``started`` (m, 3): velocity with which each cycle really began; None: the uncorrected one."""
     raw = free.raw_position_m
     excess = raw[cycles.end] - raw[cycles.start] - cycles.step_m
@@ -223,5 +159,5 @@ def _knee_motion(free: Motion, velocity: Floats, cycles: Cycles, started: Floats
         carried = free.raw_velocity_mps[cycles.start] - started
         excess = excess - carried * ((cycles.end - cycles.start) / free.rate_hz)[:, None]
     residual = np.linalg.norm(excess[:, :2], axis=1)
-    kept = vars(free) | {"velocity_mps": velocity, "position_m": position_of(velocity, free.rate_hz)}
-    return KneeMotion(**kept, cycle_start=cycles.start, cycle_end=cycles.end, residual_m=residual)
+    kept = vars(free) | {"velocity_mps": velocity, "position_m": position}
+    return KneeMotion(**kept, cycle_start=cycles.start, cycle_end=cycles.end, residual_m=residual, link=link)
