@@ -8,7 +8,7 @@ import numpy as np
 
 from gaitlab.motion import ikizoglu2018
 from gaitlab.motion.drift import DriftCurve
-from gaitlab.motion.free import method_motion
+from gaitlab.motion.foot import method_motion
 from gaitlab.motion.integration import position_of
 from gaitlab.motion.leg import Pair, RigidFit, RigidParams, fit_rigid_link
 from gaitlab.motion.model import FootMotion, Indices, KneeMotion, LegLink, LegPlace, Motion
