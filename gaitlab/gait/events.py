@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gaitlab.gait.sole import Swings
+from gaitlab.gait.sole import FootSwings
 from gaitlab.motion.model import FootMotion, Indices
 from gaitlab.motion.windows import Windows, refined
 from gaitlab.recording.model import Bools, Floats
@@ -94,7 +94,7 @@ def find_events(foot: FootMotion, params: EventParams | None = None) -> FootEven
     p = params or EventParams()
     if len(foot.rests) < 2:
         return FootEvents(np.zeros(0), np.zeros(0), np.zeros(0, dtype=np.bool_))
-    swings = Swings.of(foot)
+    swings = FootSwings.of(foot)
     off = _foot_off(swings, foot.rate_hz, p)
     contact = np.maximum(_contact(swings, foot, p), off)
     top = swings.speed_mps[swings.peak]
@@ -105,7 +105,7 @@ def find_events(foot: FootMotion, params: EventParams | None = None) -> FootEven
     )
 
 
-def _foot_off(swings: Swings, rate_hz: float, p: EventParams) -> Floats:
+def _foot_off(swings: FootSwings, rate_hz: float, p: EventParams) -> Floats:
     """Row of foot off in each swing, shape (m,)."""
     start, top = swings.whole.start, swings.speed_mps[swings.peak]
     fastest = swings.whole.highest(swings.toe_mps)
@@ -117,10 +117,10 @@ def _foot_off(swings: Swings, rate_hz: float, p: EventParams) -> Floats:
     push = swings.pitch_radps[swings.push]
     rolled = Windows(swings.push, swings.whole.end).first_below(swings.pitch_radps, p.roll_off_share * push)
     rolled = np.where((push > 0.0) & np.isfinite(rolled), rolled - 0.5 - p.roll_off_late_s * rate_hz, moves)
-    return np.asarray(np.median([moves, rolled, gone], axis=0))
+    return np.asarray(np.sort([moves, rolled, gone], axis=0)[1])
 
 
-def _contact(swings: Swings, foot: FootMotion, p: EventParams) -> Floats:
+def _contact(swings: FootSwings, foot: FootMotion, p: EventParams) -> Floats:
     """Row of initial contact in each swing, shape (m,)."""
     after, top = swings.after, swings.speed_mps[swings.peak]
     rising = foot.velocity_mps[:, 2]
@@ -133,14 +133,14 @@ def _contact(swings: Swings, foot: FootMotion, p: EventParams) -> Floats:
     late = np.array([p.slap_late_s, p.slap_late_s, p.heel_late_s, p.fall_late_s, p.impact_late_s])
     witnesses = np.stack([slap, slap, heel, fall, impact]) - late[:, None] * foot.rate_hz
     witnesses = np.where(np.isnan(witnesses), witnesses[3], witnesses)
-    middle = np.median(witnesses, axis=0)
+    middle = np.sort(witnesses, axis=0)[2]
     heard = np.abs(witnesses - middle) <= p.agreement_s * foot.rate_hz
     return np.asarray(np.sum(witnesses * heard, axis=0) / np.sum(heard, axis=0))
 
 
 def _share_past(acceleration: Floats, start: Indices, last: Indices, share: float) -> Floats:
     """Row, between two samples, at which this share of the squared jerk from ``start`` to ``last`` is past."""
-    jerk = np.diff(acceleration, axis=0)
-    past = np.concatenate([[0.0], np.cumsum(np.einsum("ij,ij->i", jerk, jerk))])
+    jerk = np.diff(np.ascontiguousarray(acceleration.T))
+    past = np.concatenate([[0.0], np.cumsum(jerk[0] ** 2 + jerk[1] ** 2 + jerk[2] ** 2)])
     sought = past[start] + share * (past[last] - past[start])
     return np.asarray(np.interp(sought, past, np.arange(len(past)))) - 0.5

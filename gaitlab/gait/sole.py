@@ -34,7 +34,7 @@ class SoleParams:
 
 
 @dataclass(frozen=True, eq=False)
-class Swings:
+class FootSwings:
     """How a foot moves from rest to rest, rows and one entry a swing, shape (m,), or one a row, shape (n,).
 
     Attributes
@@ -73,21 +73,20 @@ class Swings:
         """
         p = params or SoleParams()
         rests = foot.rests
-        to_sensor = matrices(foot.attitude)
-        rate = np.einsum("nij,ni->nj", to_sensor, foot.rate_radps)
-        velocity = np.einsum("nij,ni->nj", to_sensor, foot.velocity_mps)
-        speed = np.sqrt(np.einsum("ij,ij->i", velocity, velocity))
+        world = matrices(foot.attitude)
+        rate, velocity = _in_sensor(world, foot.rate_radps), _in_sensor(world, foot.velocity_mps)
+        speed = _size(velocity)
         whole = Windows(rests.moment[:-1], np.maximum(rests.moment[1:] + 1, rests.moment[:-1] + 2))
         peak = whole.highest(speed)
         before, after = Windows(whole.start, peak + 1), Windows(peak, whole.end)
-        pitch = rate @ _lateral_axis(rate, to_sensor, foot.velocity_mps)
+        pitch = _lateral_axis(rate, world, foot.velocity_mps) @ rate
         push, slap = before.highest(pitch), after.highest(pitch)
 
         def point_speed(first: Indices, last: Indices, of: Indices) -> Floats:
-            fast = pitch[of] >= p.roll_share * np.median(pitch[of])
-            rows = Windows(first[fast], last[fast]).rows
-            point = velocity + rate @ _cross_matrix(_still_point(rate[rows], velocity[rows], p.damping)).T
-            return np.asarray(np.sqrt(np.einsum("ij,ij->i", point, point)))
+            fast = pitch[of] >= p.roll_share * np.sort(pitch[of])[len(of) // 2]
+            chosen = rate * _inside(first[fast], last[fast], len(speed))
+            point = _still_point(chosen @ rate.T, chosen @ velocity.T, p.damping)
+            return _size(velocity + _cross_matrix(point) @ rate)
 
         toe = point_speed(whole.start, push + 1, push)
         flat = np.minimum(slap + max(1, round(p.slap_s * foot.rate_hz)), whole.end)
@@ -95,19 +94,37 @@ class Swings:
         return cls(whole, before, after, peak, push, slap, speed, toe, heel, pitch)
 
 
-def _lateral_axis(rate: Floats, to_sensor: Floats, velocity_mps: Floats) -> Floats:
+def _in_sensor(world: Floats, vectors: Floats) -> Floats:
+    """Vectors (n, 3) of the world in the sensor's frame, components first, shape (3, n)."""
+    x, y, z = np.ascontiguousarray(vectors.T)
+    turned: Floats = world[0] * x + world[1] * y + world[2] * z
+    return turned
+
+
+def _size(vectors: Floats) -> Floats:
+    return np.asarray(np.sqrt(vectors[0] ** 2 + vectors[1] ** 2 + vectors[2] ** 2))
+
+
+def _lateral_axis(rate: Floats, world: Floats, velocity_mps: Floats) -> Floats:
     """Unit vector to the left of the foot in the sensor's frame: the axis of most of its turning, with the way it
     walks ahead."""
-    axis: Floats = np.linalg.eigh(rate.T @ rate)[1][:, -1]
-    to_left = to_sensor[:, :2] @ axis
-    ahead = float(velocity_mps[:, 0] @ to_left[:, 1] - velocity_mps[:, 1] @ to_left[:, 0])
+    axis: Floats = np.linalg.eigh(rate @ rate.T)[1][:, -1]
+    x, y = np.ascontiguousarray(velocity_mps[:, :2].T)
+    ahead = float(axis @ (world[1] @ x - world[0] @ y))
     return axis if ahead >= 0.0 else -axis
 
 
-def _still_point(rate: Floats, velocity: Floats, damping: float) -> Floats:
-    """Point of a rigid body, from the sensor, that moves least over these rows; the sensor itself where it does not
-    turn."""
-    outer, mixed = rate.T @ rate, rate.T @ velocity
+def _inside(start: Indices, end: Indices, n: int) -> Floats:
+    """1 in rows ``[start, end)`` that do not overlap, 0 elsewhere, shape (n,)."""
+    edges = np.zeros(n + 1)
+    edges[start] += 1.0
+    edges[end] -= 1.0
+    return np.cumsum(edges)[:n]
+
+
+def _still_point(outer: Floats, mixed: Floats, damping: float) -> Floats:
+    """Point of a rigid body, from the sensor, that moves least, from Σ ω ωᵀ and Σ ω vᵀ over the rows; the sensor
+    itself where it does not turn."""
     turning = float(np.trace(outer))
     if turning <= 0.0:
         return np.zeros(3)

@@ -16,22 +16,26 @@ def prominent_peaks(values: Floats, prominence: float) -> Indices:
     """
     if not len(values):
         return np.zeros(0, dtype=np.intp)
-    change = np.flatnonzero(np.diff(values) != 0.0)
-    rising = np.diff(values)[change] > 0.0
-    turning = np.flatnonzero(rising[1:] != rising[:-1])
-    rows = np.unique(np.concatenate([[0], change[turning] + 1, [len(values) - 1]]))
+    rising = values[1:] > values[:-1]
+    turning = np.flatnonzero(rising[1:] != rising[:-1]) + 1
+    rows = np.concatenate([[0], turning, [len(values) - 1]])
     peaks: list[int] = []
-    top, bottom = -1, -np.inf  # row of the highest since the last valley; the lowest since the last peak
-    for row in rows.tolist():
-        value = values[row]
+    top, height, bottom = (
+        -1,
+        0.0,
+        -np.inf,
+    )  # row and value of the highest since the last valley; the lowest since
+    for row, value in zip(
+        rows.tolist(), values[rows].tolist(), strict=True
+    ):  # plain numbers: the loop is hot
         if top < 0:
             if value >= bottom + prominence:
-                top = row
-            else:
-                bottom = min(bottom, value)
-        elif value > values[top]:
-            top = row
-        elif value <= values[top] - prominence:
+                top, height = row, value
+            elif value < bottom:
+                bottom = value
+        elif value > height:
+            top, height = row, value
+        elif value <= height - prominence:
             peaks.append(top)
             top, bottom = -1, value
     if top >= 0:

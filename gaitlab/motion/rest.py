@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from gaitlab.motion.extrema import prominent_peaks
-from gaitlab.motion.model import Rests
+from gaitlab.motion.model import Indices, Rests
+from gaitlab.motion.windows import refined
 from gaitlab.recording.model import Floats
 
 
@@ -33,6 +33,8 @@ class RestParams:
         A rest reaches as far as the unrest stays below ``rim`` times its least value (or times the floor).
     cycle_range_s : tuple of float
         Shortest and longest gait cycle looked for.
+    cycle_rate_hz : float
+        The gait cycle is looked for in means over whole rows, at this rate or somewhat more.
     default_cycle_s : float
         Gait cycle assumed where the signal has no period.
     min_swing_rate_radps : float
@@ -46,14 +48,20 @@ class RestParams:
     swing: float = 0.15
     rim: float = 2.0
     cycle_range_s: tuple[float, float] = (0.5, 3.0)
+    cycle_rate_hz: float = 40.0
     default_cycle_s: float = 1.1
     min_swing_rate_radps: float = 0.5
 
 
 def _moving_rms(values: Floats, width: int) -> Floats:
-    squares = uniform_filter1d(np.einsum("ij,ij->i", values, values), width, mode="nearest")
-    rms: Floats = np.sqrt(np.maximum(squares, 0.0))
-    return rms
+    squares = uniform_filter1d(_squares(values), width, mode="nearest")
+    return np.asarray(np.sqrt(np.maximum(squares, 0.0)))
+
+
+def _squares(vectors: Floats) -> Floats:
+    """Squared length of each row, shape (n,)."""
+    x, y, z = np.ascontiguousarray(vectors.T)
+    return np.asarray(x * x + y * y + z * z)
 
 
 def cycle_time(rate_radps: Floats, rate_hz: float, params: RestParams | None = None) -> float | None:
@@ -62,35 +70,41 @@ def cycle_time(rate_radps: Floats, rate_hz: float, params: RestParams | None = N
     None where it has no period, as when nobody walks.
     """
     p = params or RestParams()
-    size = uniform_filter1d(np.linalg.norm(rate_radps, axis=1), max(1, round(0.05 * rate_hz)))
-    activity = uniform_filter1d(size, max(1, round(rate_hz)))
-    active = activity > 0.3 * np.percentile(activity, 95)
-    signal = np.where(active, size - size[active].mean() if active.any() else 0.0, 0.0)
-    longest = min(len(signal) - 1, round(p.cycle_range_s[1] * rate_hz))
-    shortest = round(p.cycle_range_s[0] * rate_hz)
+    block = max(1, int(rate_hz / p.cycle_rate_hz))
+    hz = rate_hz / block
+    size = np.sqrt(_squares(rate_radps))
+    size = size[: len(size) // block * block].reshape(-1, block).mean(axis=1)
+    longest = min(len(size) - 1, round(p.cycle_range_s[1] * hz))
+    shortest = round(p.cycle_range_s[0] * hz)
     if longest <= shortest + 2:
         return None
+    activity = uniform_filter1d(size, max(1, round(hz)))
+    active = activity > 0.3 * _quantile(activity, 0.95)
+    signal = np.where(active, size - size[active].mean() if active.any() else 0.0, 0.0)
     n_fft = 1 << (len(signal) + longest - 1).bit_length()
     spectrum = np.fft.rfft(signal, n_fft)
-    correlation = np.fft.irfft(np.abs(spectrum) ** 2, n_fft)[: longest + 1]
+    correlation = np.fft.irfft(spectrum.real**2 + spectrum.imag**2, n_fft)[: longest + 1]
     if correlation[0] <= 0:
         return None
     correlation = correlation / correlation[0] / (1.0 - np.arange(longest + 1) / len(signal))
-    peaks = prominent_peaks(correlation[shortest:], 0.05)
-    if not len(peaks):
-        return None
-    peaks = peaks + shortest
-    if correlation[peaks].max() <= 0:
+    peaks = prominent_peaks(correlation[shortest:], 0.05) + shortest
+    if not len(peaks) or correlation[peaks].max() <= 0:
         return None
     high = peaks[correlation[peaks] >= 0.8 * correlation[peaks].max()]
-    return float(high[0] / rate_hz)
+    return float(refined(correlation, high[:1])[0] / hz)
+
+
+def _quantile(values: Floats, share: float) -> float:
+    """Value that this share of the values does not exceed, without interpolation."""
+    k = round(share * (len(values) - 1))
+    return float(np.partition(values, k)[k])
 
 
 def _typical_swing(level: Floats, distance: int) -> float:
     """Median of the peaks that are the highest within ``distance`` rows and not mere standing."""
     highest = maximum_filter1d(level, 2 * distance + 1, mode="nearest")
-    peaks = (level == highest) & (level >= 0.3 * np.percentile(level, 98))
-    return float(np.median(level[peaks])) if peaks.any() else float(level.max(initial=0.0))
+    peaks = (level == highest) & (level >= 0.3 * _quantile(level, 0.98))
+    return _quantile(level[peaks], 0.5) if peaks.any() else float(level.max(initial=0.0))
 
 
 def unrest(
@@ -127,25 +141,40 @@ class _Valley:
 def _one_per_cycle(level: Floats, params: RestParams) -> list[_Valley]:
     """Valleys of the unrest, one between every two swings."""
     candidates = prominent_peaks(-np.log(level), float(np.log(params.prominence)))
-    kept: list[_Valley] = []
-    for row in map(int, candidates):
-        if kept and level[kept[-1].last : row].max() < params.swing:
-            one = kept[-1]
-            deepest = row if level[row] < level[one.moment] else one.moment
-            kept[-1] = _Valley(one.first, row, deepest)
-        else:
+    if not len(candidates):
+        return []
+    depth = level[candidates].tolist()
+    swings = np.maximum.reduceat(level, candidates).tolist()  # the highest from each candidate to the next
+    kept = [_Valley(int(candidates[0]), int(candidates[0]), int(candidates[0]))]
+    deepest = depth[0]
+    for row, value, swing in zip(candidates[1:].tolist(), depth[1:], swings[:-1], strict=True):
+        if swing >= params.swing:
             kept.append(_Valley(row, row, row))
+            deepest = value
+            continue
+        one = kept[-1]
+        kept[-1] = _Valley(one.first, row, row if value < deepest else one.moment)
+        deepest = min(deepest, value)
     return kept
 
 
-def _extent(level: Floats, valley: _Valley, low: int, high: int, params: RestParams) -> tuple[int, int]:
-    """Rows ``[start, end)`` within ``[low, high)`` around a valley in which the unrest stays low."""
-    limit = params.rim * max(float(level[valley.moment]), params.floor)
-    over = np.flatnonzero(level[low : valley.first + 1] > limit)
-    start = low + int(over[-1]) + 1 if len(over) else low
-    over = np.flatnonzero(level[valley.last : high] > limit)
-    end = valley.last + int(over[0]) if len(over) else high
-    return min(start, valley.first), max(end, valley.last + 1)
+def _extents(level: Floats, valleys: list[_Valley], params: RestParams) -> tuple[Indices, Indices, Indices]:
+    """First row, row after the last and quietest row of each rest: the stretch around each valley, no farther than
+    the highest rows beside it, in which the unrest stays low."""
+    first = np.array([valley.first for valley in valleys], dtype=np.intp)
+    last = np.array([valley.last for valley in valleys], dtype=np.intp)
+    moment = np.array([valley.moment for valley in valleys], dtype=np.intp)
+    swings = [
+        a + int(level[a:b].argmax()) for a, b in zip(last[:-1].tolist(), first[1:].tolist(), strict=True)
+    ]
+    borders = np.array([0, *swings, len(level)], dtype=np.intp)
+    limit = params.rim * np.maximum(level[moment], params.floor)
+    over = np.flatnonzero(level > np.repeat(limit, np.diff(borders)))
+    over = np.concatenate([[-1], over, [len(level)]])
+    start = over[np.searchsorted(over, first, "right") - 1] + 1
+    end = over[np.searchsorted(over, last)]
+    start = np.minimum(np.maximum(start, borders[:-1]), first)
+    return start, np.maximum(np.minimum(end, borders[1:]), last + 1), moment
 
 
 def find_rests(
@@ -165,15 +194,9 @@ def find_rests(
     if level is None:
         return no_rests()
     valleys = _one_per_cycle(level, p)
-    swings = [a.last + int(np.argmax(level[a.last : b.first])) for a, b in itertools.pairwise(valleys)]
-    borders = [0, *swings, len(level)]
-    extents = [
-        _extent(level, valley, low, high, p)
-        for valley, (low, high) in zip(valleys, itertools.pairwise(borders), strict=True)
-    ]
-    start = np.array([e[0] for e in extents], dtype=np.intp)
-    end = np.array([e[1] for e in extents], dtype=np.intp)
-    moment = np.array([v.moment for v in valleys], dtype=np.intp)
+    if not valleys:
+        return no_rests()
+    start, end, moment = _extents(level, valleys, p)
     return Rests(start, end, moment, np.zeros((len(moment), 3)))
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from gaitlab.motion.model import Indices
 from gaitlab.recording.model import Bools, Floats
 
-NOWHERE = np.nan
+_NONE = np.iinfo(np.intp).max
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,13 +60,12 @@ class Windows:
         inside = weights[self.rows]
         total = np.add.reduceat(inside, self.first)
         moment = np.add.reduceat(inside * self.rows, self.first)
-        return np.asarray(np.divide(moment, total, out=np.full(len(total), NOWHERE), where=total > 0.0))
+        return np.asarray(np.divide(moment, total, out=np.full(len(total), np.nan), where=total > 0.0))
 
     def _earliest(self, mask: Bools) -> Indices:
         """First row of each window where the mask is true, −1 where it is nowhere."""
-        none = np.iinfo(np.intp).max
-        found = np.minimum.reduceat(np.where(mask, self.rows, none), self.first)
-        return np.where(found == none, -1, found)
+        found = np.minimum.reduceat(np.where(mask, self.rows, _NONE), self.first)
+        return np.where(found == _NONE, -1, found)
 
 
 def _between(values: Floats, row: Indices, start: Indices, level: Floats) -> Floats:
@@ -75,7 +74,7 @@ def _between(values: Floats, row: Indices, start: Indices, level: Floats) -> Flo
     after = np.where(known, row, 1)
     low, high = values[after - 1], values[after]
     step = np.where(high == low, 1.0, high - low)
-    return np.where(known, after - 1 + (level - low) / step, NOWHERE)
+    return np.where(known, after - 1 + (level - low) / step, np.nan)
 
 
 def refined(values: Floats, row: Indices) -> Floats:
