@@ -13,6 +13,8 @@ from gaitlab.gait.measurement import Measurement
 from gaitlab.gait.model import Gait
 from gaitlab.gait.strides import FootGait
 from gaitlab.gait.timed_walk import START_RULE, TimedCourse
+from gaitlab.motion.rest import rest_evidence
+from gaitlab.quality import trial_quality
 from gaitlab.recording.model import Recording
 from gaitlab.settings import Settings
 
@@ -20,6 +22,7 @@ from gaitlab.settings import Settings
 def result_of(recording: Recording, settings: Settings, gait: Gait) -> result.Result:
     """The result of an analysis, numbers rounded to what the interface promises (10 µs, 10 µm)."""
     chosen = settings.as_dict()
+    judged = trial_quality(gait.findings)
     inputs = tuple(
         result.Input(placement=placement, name=sensor.source.name, sha256=sensor.source.sha256)
         for placement, sensor in recording.sensors.items()
@@ -63,6 +66,7 @@ def result_of(recording: Recording, settings: Settings, gait: Gait) -> result.Re
             for name, sides in gait.spreads.items()
             for side, one in sides.items()
         ),
+        quality=result.TrialQuality(status=judged.status.value, reasons=judged.reasons),
     )
 
 
@@ -70,16 +74,37 @@ def _r(value: float | np.floating[Any]) -> float:
     return round(float(value), 5)
 
 
+def _known(value: float | np.floating[Any]) -> float | None:
+    return _r(value) if np.isfinite(value) else None
+
+
 def _foot(foot: FootGait) -> result.Foot:
     rests, times = foot.motion.rests, foot.motion.time_s
     period = 1.0 / foot.motion.rate_hz
-    speed = np.linalg.norm(rests.residual_mps, axis=1)
+    motion = foot.motion
+    shown = rest_evidence(motion.acceleration_mps2, motion.rate_radps, rests, motion.rate_hz)
+    verdicts = [foot.verdicts.of(k) for k in range(len(foot))]
     distance, distance_sd = distance_of(foot)
     walking = foot.walking
     return result.Foot(
         rests=tuple(
-            result.Rest(start_s=_r(times[a]), end_s=_r(times[b - 1] + period), residual_velocity_mps=_r(v))
-            for a, b, v in zip(rests.start, rests.end, speed, strict=True)
+            result.Rest(
+                start_s=_r(times[a]),
+                end_s=_r(times[b - 1] + period),
+                residual_velocity_mps=_r(speed),
+                gyr_sd_radps=_known(gyr),
+                acc_sd_mps2=_known(acc),
+                implied_acc_error_mps2=_known(implied),
+            )
+            for a, b, speed, gyr, acc, implied in zip(
+                rests.start,
+                rests.end,
+                shown.residual_mps,
+                shown.gyr_sd_radps,
+                shown.acc_sd_mps2,
+                shown.implied_acc_error_mps2,
+                strict=True,
+            )
         ),
         events=result.Events(
             foot_off_s=tuple(_r(t) for t in foot.events.foot_off_s[walking]),
@@ -94,6 +119,8 @@ def _foot(foot: FootGait) -> result.Foot:
                 duration_s=_r(foot.end_s[k] - foot.start_s[k]),
                 speed_mps=_r(foot.length_m[k] / (foot.end_s[k] - foot.start_s[k])),
                 turning=bool(foot.turning[k]),
+                quality=verdicts[k][0].value,
+                reason=verdicts[k][1],
             )
             for k in np.flatnonzero(walking)
         ),

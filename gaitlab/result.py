@@ -51,12 +51,19 @@ class SensorQuality(_Part):
     device: str | None
 
 
+Quality = Literal["valid", "attention", "invalid"]
+
+
 class Rest(_Part):
-    """An interval in which the foot rests; the velocity before the reset is the evidence of how good it was."""
+    """An interval in which the foot rests, and the evidence of how good it was: the velocity before the reset, the
+    acceleration error since the rest before that would explain it, and the spread of the signals within."""
 
     start_s: float
     end_s: float
     residual_velocity_mps: float
+    gyr_sd_radps: float | None = None
+    acc_sd_mps2: float | None = None
+    implied_acc_error_mps2: float | None = None
 
 
 class Events(_Part):
@@ -67,7 +74,7 @@ class Events(_Part):
 
 
 class Stride(_Part):
-    """One stride: from one rest of the foot to the next."""
+    """One stride: from one rest of the foot to the next. Invalid ones are left out of means; ``reason`` says why."""
 
     start_s: float
     end_s: float
@@ -76,6 +83,8 @@ class Stride(_Part):
     duration_s: float
     speed_mps: float
     turning: bool
+    quality: Quality = "valid"
+    reason: str = ""
 
 
 class Foot(_Part):
@@ -184,6 +193,13 @@ class ResultWarning(_Part):
     placement: str | None
 
 
+class TrialQuality(_Part):
+    """May the trial be used? ``reasons``: a sentence each, the gravest first."""
+
+    status: Quality
+    reasons: tuple[str, ...]
+
+
 class Result(BaseModel):
     """One analysis of one trial. Times in seconds on the packet clock."""
 
@@ -199,6 +215,7 @@ class Result(BaseModel):
     parameters: tuple[Parameter, ...]
     warnings: tuple[ResultWarning, ...]
     spreads: tuple[StrideSpread, ...] = ()
+    quality: TrialQuality | None = None
 
     def to_json(self) -> str:
         """Canonical JSON: the same result always has the same bytes."""

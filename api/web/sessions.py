@@ -20,6 +20,7 @@ from gaitlab.analysis import Settings
 from gaitlab.clinic import reports, sessions
 from gaitlab.clinic.access import Permission
 from gaitlab.errors import InputError, NotFound
+from gaitlab.report.strides import stride_rows
 from gaitlab.report.summary import verdict
 
 router = APIRouter(include_in_schema=False, route_class=GuardedRoute)
@@ -49,6 +50,7 @@ def show(
         result=trial.result,
         summary=summary(trial.result),
         verdict=verdict(trial.result),
+        strides=stride_rows(trial.result),
         tables=parameter_tables(trial.result),
         strip=walk_strip(trial.result),
         figures=figures,

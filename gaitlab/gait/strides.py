@@ -9,12 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from gaitlab.gait.events import FootEvents, find_events
+from gaitlab.gait.verdicts import Verdicts, judge_strides
 from gaitlab.motion.course import Course, CourseParams, Span, Swings
 from gaitlab.motion.model import FootMotion, Indices
 from gaitlab.recording.model import Bools, Floats, Side
-
-DOUBTFUL_SHARE = 0.1
-"""A stride with a larger share of lost or saturated rows is left out of means, where others are left."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,8 +36,8 @@ class FootGait:
         all straight ones: see ``few_straight``).
     few_straight : bool
         No straight part has a stride between its first and its last.
-    doubtful : ndarray of bool
-        More than a tenth of its rows were lost or saturated.
+    verdicts : Verdicts
+        Which strides want attention or are invalid, and why.
     """
 
     motion: FootMotion
@@ -55,7 +53,7 @@ class FootGait:
     part: Indices
     steady: Bools
     few_straight: bool
-    doubtful: Bools
+    verdicts: Verdicts
 
     def __len__(self) -> int:
         return len(self.length_m)
@@ -65,6 +63,11 @@ class FootGait:
         """Strides of straight parts."""
         straight: Bools = self.part >= 0
         return straight
+
+    @property
+    def doubtful(self) -> Bools:
+        """Invalid strides: left out of means, where others are left."""
+        return self.verdicts.invalid
 
     @property
     def continued(self) -> Bools:
@@ -106,7 +109,7 @@ def foot_gait(motion: FootMotion, course: Course, common_sd: float) -> FootGait:
         part,
         part >= 0 if few_straight else steady,
         few_straight,
-        motion.doubtful_share > DOUBTFUL_SHARE,
+        judge_strides(motion, length, motion.displacement_sd_m),
     )
 
 

@@ -85,10 +85,12 @@ def runs_of(index: Indices) -> int:
 
 
 def phases_of(foot: FootGait) -> Phases:
-    """Phases of each steady stride whose contact before it is known."""
+    """Phases of each steady stride that begins with a known contact, as far as there are some: that of a sound swing."""
     off, contact = foot.events.foot_off_s, foot.events.initial_contact_s
     k = np.flatnonzero(chosen_strides(foot) & foot.continued)
     k = k[contact[k] - contact[k - 1] <= LONGEST_STRIDE_S]
+    begun = ~foot.doubtful[k - 1]
+    k = k[begun] if begun.any() else k
     stride = contact[k] - contact[k - 1]
     return Phases(k, contact[k - 1], off[k], stride, off[k] - contact[k - 1], contact[k] - off[k])
 

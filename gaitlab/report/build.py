@@ -22,9 +22,10 @@ from gaitlab.report.document import (
 )
 from gaitlab.report.figures import Figure, figures
 from gaitlab.report.parameters import group_tables, key_table
+from gaitlab.report.strides import pooled_table, stride_rows
 from gaitlab.report.summary import summary_sentences, verdict
-from gaitlab.report.wording import count, number, percent, with_unit
-from gaitlab.result import Foot, Result
+from gaitlab.report.wording import count, decimals_for, number, percent, uncertainty, with_unit
+from gaitlab.result import Foot, Parameter, Result
 
 TESTS = {"t25fw": "Timed 25-foot walk", "10mwt": "10-metre walk test", "walk": "Free walk"}
 MOST_SPANS = 12
@@ -76,6 +77,7 @@ def build_report(
         session=_session_facts(session, len(trials)),
         trials=sections,
         comparison=_comparison(sections) if len(sections) > 1 else None,
+        pooled=pooled_table([trial.result for trial in trials]),
         legend=(VALUES_NOTE, STATUS_NOTE),
         frame=FRAME,
         residual_note=RESIDUAL_NOTE,
@@ -134,6 +136,7 @@ def _section(trial: TrialReport, n_trials: int, digest: str) -> TrialSection:
         overview_figures=tuple(figure for figure in drawn if figure.wide),
         figure_pairs=_pairs([figure for figure in drawn if not figure.wide]),
         sensors=_sensor_rows(result),
+        strides=stride_rows(result),
         warnings=tuple(_warnings(result)),
         provenance=_provenance(result, digest),
         files=tuple(
@@ -163,6 +166,9 @@ def _walk_facts(result: Result) -> tuple[Fact, ...]:
                 f"{course}, from {_span(walk.timed.start_s, walk.timed.end_s)}; start: {walk.timed.rule}",
             )
         )
+    check = result.parameter("course_check")
+    if check is not None and check.value is not None:
+        facts.append(Fact("Walk against the course", _course_check(check)))
     if walk.straights:
         facts.append(Fact("Straight parts", _some([_span(s.start_s, s.end_s) for s in walk.straights])))
     if walk.turns:
@@ -173,10 +179,23 @@ def _walk_facts(result: Result) -> tuple[Fact, ...]:
     return tuple(facts)
 
 
+def _course_check(check: Parameter) -> str:
+    """The farthest place of rest against the known course: shown, never used."""
+    decimals = decimals_for(check.sd, check.decimals)
+    sign = "+" if (check.value or 0.0) > 0 else ""
+    said = with_unit(f"{sign}{number(check.value or 0.0, decimals)} {uncertainty(check.sd, decimals)}", "%")
+    reserve = check.reason if check.status != "ok" else "A check of the scale; no value is corrected by it."
+    return f"{said}. {reserve}"
+
+
 def _foot_fact(foot: Foot) -> str:
     turning = sum(stride.turning for stride in foot.strides)
+    doubted = [
+        sum(stride.quality == quality for stride in foot.strides) for quality in ("attention", "invalid")
+    ]
+    judged = f", {doubted[0]} with attention, {doubted[1]} invalid" if any(doubted) else ""
     return (
-        f"{count(len(foot.strides), 'stride')}, {turning} of them in turns; "
+        f"{count(len(foot.strides), 'stride')}, {turning} of them in turns{judged}; "
         f"{count(len(foot.rests), 'rest')}; {count(len(foot.events.initial_contact_s), 'initial contact')}, "
         f"{len(foot.events.foot_off_s)} times foot off"
     )

@@ -131,12 +131,25 @@ class FileRow:
 
 
 @dataclass(frozen=True)
+class StrideRow:
+    """A stride that is not valid as it is, and why."""
+
+    foot: str
+    time: str
+    length: str
+    status: StatusCode
+    label: str
+    reason: str
+
+
+@dataclass(frozen=True)
 class Verdict:
-    """May this trial be used? In a word and in a sentence."""
+    """May this trial be used? In a word, in a sentence, and with the reasons where it is not simply valid."""
 
     status: StatusCode
     label: str
     text: str
+    reasons: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -153,6 +166,7 @@ class TrialSection:
     overview_figures: tuple[Figure, ...]
     figure_pairs: tuple[tuple[Figure, ...], ...]
     sensors: tuple[SensorRow, ...]
+    strides: tuple[StrideRow, ...]
     warnings: tuple[str, ...]
     provenance: tuple[Fact, ...]
     files: tuple[FileRow, ...]
@@ -182,7 +196,8 @@ class Report:
     """A whole report, ready to be laid out.
 
     ``fingerprint`` is the SHA-256 of the attached result (of several: of their hashes in order, one a line);
-    ``legend`` explains the tables, ``frame`` the figures' axes, ``residual_note`` the evidence of rests;
+    ``pooled`` is what only all trials together tell; ``legend`` explains the tables, ``frame`` the figures' axes,
+    ``residual_note`` the evidence of rests;
     ``created_at`` is kept for the PDF's metadata.
     """
 
@@ -193,6 +208,7 @@ class Report:
     session: tuple[Fact, ...]
     trials: tuple[TrialSection, ...]
     comparison: Comparison | None
+    pooled: ParameterTable | None
     legend: tuple[str, ...]
     frame: str
     residual_note: str

@@ -63,9 +63,12 @@ def group_tables(result: Result) -> tuple[ParameterTable, ...]:
     """All parameters by group: known groups in the order in which people read them, then any other."""
     names = [*GROUPS, *dict.fromkeys(p.group for p in result.parameters if p.group not in GROUPS)]
     by_group = ((name, [p for p in result.parameters if p.group == name]) for name in names)
-    return tuple(
-        ParameterTable(GROUPS.get(name, name), _rows(found), ()) for name, found in by_group if found
-    )
+    return tuple(parameter_table(GROUPS.get(name, name), found) for name, found in by_group if found)
+
+
+def parameter_table(title: str, parameters: Sequence[Parameter]) -> ParameterTable:
+    """Any parameters as one table, reasons with their rows."""
+    return ParameterTable(title, _rows(parameters), ())
 
 
 def _rows(parameters: Sequence[Parameter], letters: Letters | None = None) -> tuple[ParameterRow, ...]:

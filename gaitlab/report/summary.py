@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from gaitlab.gait.verdicts import Quality
+from gaitlab.quality import severity
 from gaitlab.report.document import Verdict
 from gaitlab.report.parameters import key_names
+from gaitlab.report.strides import STATUS_OF
 from gaitlab.report.wording import common_decimals, count, listed, number, percent, spoken, with_unit
-from gaitlab.result import Parameter, Result
+from gaitlab.result import Parameter, Result, TrialQuality
 
 LOSS_OF_NOTE = 0.05
 """Share of lost samples of one sensor from which the verdict mentions it."""
@@ -13,12 +16,8 @@ LOSS_OF_NOTE = 0.05
 RESTS_ON_AN_ASSUMPTION = frozenset({"step_length"})
 """Key values that always rest on how the feet stood, so that they say nothing about this recording."""
 
-FOR_INFORMATION = frozenset(
-    {"lost_samples", "sensor_not_used", "column_not_used", "standing_elsewhere", "rate_overridden"}
-)
-"""Codes of warnings that alone are no reason for attention; a loss of note is one by its share."""
-
 MOST_NAMES = 3
+MOST_REASONS = 4
 
 
 def summary_sentences(result: Result) -> tuple[str, ...]:
@@ -90,7 +89,8 @@ def _sides(result: Result, name: str) -> str | None:
 
 
 def verdict(result: Result) -> Verdict:
-    """Usable, usable with attention, or not usable: by the key values, the lost samples and the warnings."""
+    """May the trial be used? The analysis says so; of a result stored before it did, the key values, the lost samples
+    and the warnings decide."""
     counted = set(key_names(result)) - RESTS_ON_AN_ASSUMPTION
     key = [p for p in result.parameters if p.name in counted] or list(result.parameters)
     known = [p for p in key if p.value is not None]
@@ -106,12 +106,21 @@ def verdict(result: Result) -> Verdict:
         said.append(f"{len(missing)} missing{_names(missing)}")
     words = f"See {count(len(result.warnings), 'warning')}." if result.warnings else ""
     text = " ".join(part for part in ("; ".join(said) + ".", loss, words) if part)
+    if result.quality is not None:
+        return _stored_verdict(result.quality, text)
     if not known:
         return Verdict("not_determinable", "Not usable", text)
-    serious = any(warning.code not in FOR_INFORMATION for warning in result.warnings)
+    serious = any(severity(warning.code) is not Quality.VALID for warning in result.warnings)
     if reserved or missing or loss or serious:
         return Verdict("attention", "Usable with attention", text)
     return Verdict("ok", "Usable", text)
+
+
+def _stored_verdict(quality: TrialQuality, text: str) -> Verdict:
+    """The analysis's own verdict, with as many reasons as one reads at the top."""
+    reasons, more = quality.reasons[:MOST_REASONS], len(quality.reasons) - MOST_REASONS
+    rest = (f"And {count(more, 'more reason')}: see the warnings.",) if more > 0 else ()
+    return Verdict(STATUS_OF[quality.status], quality.status.capitalize(), text, (*reasons, *rest))
 
 
 def _loss(result: Result) -> str:

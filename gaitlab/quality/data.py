@@ -15,6 +15,7 @@ from gaitlab.gait.strides import FootGait
 from gaitlab.motion.model import FootMotion, KneeMotion, Motion
 from gaitlab.motion.offset import STANDARD_GRAVITY_MPS2
 from gaitlab.motion.rest import find_rests, restlessness
+from gaitlab.quality.trial import invalid_strides
 from gaitlab.recording.model import Finding, Placement, Recording, Side
 
 
@@ -86,6 +87,7 @@ RESERVES: dict[str, tuple[tuple[str, ...], str]] = {
     ),
     "restless_foot": ((*_PATHS, *_TIMES), "The foot hardly comes to rest."),
     "large_residual": (_PATHS, "The path drifted much between rests."),
+    "most_strides_invalid": ((*_PATHS, *_TIMES), "Most strides are invalid."),
     "rate_assumed": (_ALL, "The sampling rate is assumed."),
     "rate_contradiction": (_ALL, "The sampling rate is in doubt."),
 }
@@ -144,6 +146,7 @@ def findings(
         found += _of_foot(Placement.foot(side), foot)
         if method != "gaitlab":
             found += _of_rests(Placement.foot(side), foot)
+    found += invalid_strides(feet)
     for side, knee in knees.items():
         found += _of_sensor(Placement.knee(side), knee.motion)
         if not len(knee.motion.residual_m) and feet[side].walking.any():
