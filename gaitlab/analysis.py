@@ -20,7 +20,6 @@ from gaitlab.motion.foot import track_foot
 from gaitlab.motion.frame import Frame, to_common_frame
 from gaitlab.motion.knee import track_knee
 from gaitlab.motion.model import FootMotion, KneeMotion
-from gaitlab.motion.offset import STANDARD_GRAVITY_MPS2
 from gaitlab.outcome import result_of
 from gaitlab.recording.model import Placement, Recording, Side
 from gaitlab.result import Result
@@ -120,12 +119,7 @@ def _measure(
     knee_motions: Mapping[Side, KneeMotion],
     course: Course,
 ) -> Gait:
-    feet = {
-        side: foot_gait(
-            motion, course, abs(motion.offsets.gravity_mps2 / STANDARD_GRAVITY_MPS2 - 1.0) / np.sqrt(3.0)
-        )
-        for side, motion in frame.feet.items()
-    }
+    feet = {side: foot_gait(motion, course) for side, motion in frame.feet.items()}
     knees = {
         side: knee_gait(motion, feet[side], _knee_shift(recording, side))
         for side, motion in knee_motions.items()

@@ -77,7 +77,7 @@ class FootGait:
         return continued
 
 
-def foot_gait(motion: FootMotion, course: Course, common_sd: float) -> FootGait:
+def foot_gait(motion: FootMotion, course: Course) -> FootGait:
     """Strides of a foot on a course."""
     length = np.linalg.norm(np.diff(motion.rest_position_m, axis=0)[:, :2], axis=1)
     start, end = _bounds(motion)
@@ -102,7 +102,7 @@ def foot_gait(motion: FootMotion, course: Course, common_sd: float) -> FootGait:
         end,
         length,
         motion.displacement_sd_m,
-        common_sd,
+        motion.scale_sd,
         turning,
         walking,
         bout,

@@ -9,6 +9,7 @@ from enum import StrEnum
 import numpy as np
 
 from gaitlab.motion.model import FootMotion, Indices
+from gaitlab.motion.path import PathParams
 from gaitlab.motion.rest import rest_evidence
 from gaitlab.recording.model import Bools, Floats
 
@@ -43,7 +44,7 @@ class StrideQualityParams:
 
     lost_share: float = 0.1
     most_lost_share: float = 0.5
-    blind_gap_s: float = 0.3
+    blind_gap_s: float = PathParams().blind_gap_s
     most_saturated_share: float = 0.1
     drift: float = 5.0
     most_drift: float = 10.0

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gaitlab.motion.foot import heading_change
+from gaitlab.motion.heading import heading_change
 from gaitlab.motion.model import FootMotion
 from gaitlab.recording.model import Bools, Floats, Side
 

@@ -10,8 +10,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gaitlab.motion.integration import PathUncertainty, position_of, velocity_of
-from gaitlab.motion.model import Motion, Rests
+from gaitlab.motion.displacement import foot_motion
+from gaitlab.motion.integration import position_of, velocity_of
+from gaitlab.motion.model import FootMotion, Motion, Rests
+from gaitlab.motion.passages import leaving
 from gaitlab.recording.model import Floats, Sensor
 
 
@@ -35,23 +37,18 @@ class PaperParams:
     offset_end_s: float = 3.0
 
 
-UNCERTAINTY = PathUncertainty(unlinear_share=1.0, bridge=3.0**-0.5)
-"""Nothing is removed between rests: an acceleration error that is white over a swing of duration T and leaves Δv there
-makes a position error of Δv·T/√3."""
-
-
 def free_motion(sensor: Sensor, estimated: Motion, params: PaperParams | None = None) -> Motion:
     """Free acceleration as the paper takes it: the device's own, its mean from 2 s to 3 s removed per axis.
 
     Deviations: where the file has no free acceleration, it is computed from the device's orientation, or from an
     estimated one where there is none, with the sensor's static offsets removed; where the foot does not stand from
-    2 s to 3 s, the mean is taken over the standing second that was found.
+    2 s to 3 s, the mean is taken over the standing that was found.
     """
     p = params or PaperParams()
     acceleration = sensor.free_acc_mps2 if sensor.free_acc_mps2 is not None else estimated.acceleration_mps2
     rate_hz = estimated.rate_hz
     start, end = round(p.offset_start_s * rate_hz), round(p.offset_end_s * rate_hz)
-    if estimated.offsets.standing or end > len(acceleration):
+    if not estimated.offsets.as_in_paper:
         start, end = estimated.offsets.start, estimated.offsets.end
     acceleration = acceleration - acceleration[start:end].mean(axis=0)
     velocity = velocity_of(acceleration, rate_hz)
@@ -93,6 +90,24 @@ def reset_at_rests(acceleration_mps2: Floats, rests: Rests, rate_hz: float) -> t
     residual = velocity[rests.start].copy()
     velocity[rests.mask(len(raw))] = 0.0
     return velocity, replace(rests, residual_mps=residual)
+
+
+def track_foot(free: Motion) -> FootMotion:
+    """Path of a foot as the paper takes it, from its free acceleration.
+
+    Uncertainty: nothing is removed between rests, so that an acceleration error that is white over a swing of duration T
+    and leaves the velocity Δv makes a position error of Δv·T/√3; Δv is the RMS of the stride's own and the recording's.
+    """
+    rests = find_rests(free.acceleration_mps2, free.rate_hz)
+    velocity, rests = reset_at_rests(free.acceleration_mps2, rests, free.rate_hz)
+    moved = {"velocity_mps": velocity, "position_m": position_of(velocity, free.rate_hz)}
+    k = max(len(rests) - 1, 0)
+    swing_s = (rests.start[1:] - leaving(rests)[:-1]) / free.rate_hz
+    own = np.einsum("ij,ij->i", rests.residual_mps[1:, :2], rests.residual_mps[1:, :2]) / 2.0
+    variance = 0.5 * (own + (own.mean() if k else 0.0)) * swing_s**2 / 3.0
+    steps = variance[:, None, None] * np.eye(3)
+    places = np.concatenate([np.zeros((min(len(rests), 1), 3, 3)), np.cumsum(steps, axis=0)])
+    return foot_motion(moved, free, rests, steps, places, np.zeros(k, dtype=np.bool_))
 
 
 def correct_knee(

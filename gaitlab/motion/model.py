@@ -26,15 +26,18 @@ class Offsets:
     Attributes
     ----------
     start, end : int
-        Rows of the standing second, ``[start, end)``; both 0 where none was found.
+        Rows of the longest stretch of standing, ``[start, end)``, at least a second; the quietest second where nobody
+        stands still.
     acc_mps2, gyr_radps : tuple of 3 floats
         Subtracted from the sensor's readings, sensor frame.
     standing : bool
         False where nobody stood still for a second; the offsets are then the best that is known.
     gravity_mps2 : float
         Size of the specific force while standing, before any correction.
+    drift_sd_radps : float
+        Standard uncertainty of the gyroscope's offset about the vertical.
     as_in_paper : bool
-        The second is the one the paper takes, 2 s to 3 s after the sensor's start.
+        It stands from 2 s to 3 s after the sensor's start, the second that the paper takes.
     """
 
     start: int
@@ -43,6 +46,7 @@ class Offsets:
     gyr_radps: tuple[float, float, float]
     standing: bool
     gravity_mps2: float
+    drift_sd_radps: float
     as_in_paper: bool = False
 
 
@@ -139,19 +143,38 @@ class FootMotion(Motion):
     ----------
     rests : Rests
     displacement_sd_m : ndarray (k − 1,)
-        Standard uncertainty of the horizontal displacement from each rest to the next.
+        Standard uncertainty of the length of the horizontal displacement from each rest to the next.
+    scale_sd : float
+        Part of it that all displacements share, as a share of their length.
     doubtful_share : ndarray (k − 1,)
         Share of lost or saturated rows in the movement between.
+    step_covariance_m2 : ndarray (k − 1, 3, 3)
+        Of the sensor's displacement from each rest to the next.
+    place_covariance_m2 : ndarray (k, 3, 3)
+        Of its place at each rest against the first, drift of the heading included.
+    level : ndarray of bool (k − 1,)
+        The floor was taken to be level between the two rests.
     """
 
     rests: Rests
     displacement_sd_m: Floats
+    scale_sd: float
     doubtful_share: Floats
+    step_covariance_m2: Floats
+    place_covariance_m2: Floats
+    level: Bools
 
     def turned(self, yaw_rad: float) -> Self:
-        """As ``Motion.turned``; the residual velocities turn with it."""
+        """As ``Motion.turned``; residual velocities and covariances turn with it."""
         residual = turn_to_left(self.rests.residual_mps, yaw_rad)
-        return replace(super().turned(yaw_rad), rests=replace(self.rests, residual_mps=residual))
+        c, s = np.cos(yaw_rad), np.sin(yaw_rad)
+        turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        return replace(
+            super().turned(yaw_rad),
+            rests=replace(self.rests, residual_mps=residual),
+            step_covariance_m2=turn @ self.step_covariance_m2 @ turn.T,
+            place_covariance_m2=turn @ self.place_covariance_m2 @ turn.T,
+        )
 
     @property
     def rest_position_m(self) -> Floats:

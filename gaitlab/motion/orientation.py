@@ -1,4 +1,4 @@
-"""Orientation of a sensor against the world: the device's own, or estimated by VQF."""
+"""Orientation of a sensor against the world: from the gyroscope alone, estimated by VQF, or the device's own."""
 
 from __future__ import annotations
 
@@ -11,8 +11,12 @@ from gaitlab.recording.model import Floats
 
 
 class OrientationSource(StrEnum):
-    """Where the orientation comes from."""
+    """Where the orientation comes from.
 
+    ``STRAPDOWN``: the gyroscope's integral, made level at the rests of a foot (anything else: by the mean force).
+    """
+
+    STRAPDOWN = "strapdown"
     VQF = "vqf"
     DEVICE = "device"
 

@@ -106,6 +106,9 @@ class Sensor:
     attitude : ndarray (n, 4) or None
         The device's own orientation.
     pressure_pa : ndarray (n,) or None
+    averaged : bool
+        Each sample is the mean over the interval that ends with it, as a device sends that integrates on board (MTw);
+        False where it was sampled at an instant.
     """
 
     placement: Placement
@@ -121,6 +124,7 @@ class Sensor:
     attitude: Floats | None = None
     pressure_pa: Floats | None = None
     device: str | None = None
+    averaged: bool = True
 
     def __post_init__(self) -> None:
         for value in vars(self).values():

@@ -73,11 +73,13 @@ def read_files(files: Mapping[Placement, InputFile], rate_hz: float | None = Non
 
 
 def to_sensor(placement: Placement, samples: Samples, rate: Rate, shift: int = 0) -> Sensor:
-    """Lay one sensor's samples on its regular packet clock and fill what was lost."""
+    """Lay one sensor's samples on its regular packet clock and fill what was lost: by the next one where a sample is a
+    mean since the one before it, else by straight lines."""
     grid = regular_grid(samples.packet, samples.file.name)
     saturated = ~grid.received
     saturated[:] = False
     saturated[grid.row] = samples.saturated
+    fill = grid.hold_next if samples.averaged else grid.interpolate
     return Sensor(
         placement=placement,
         source=Source(samples.file.name, samples.file.sha256, len(samples.file.content)),
@@ -85,13 +87,14 @@ def to_sensor(placement: Placement, samples: Samples, rate: Rate, shift: int = 0
         first_packet=grid.first_packet + shift,
         received=grid.received,
         saturated=saturated,
-        acc_mps2=grid.hold_next(samples.acc_mps2),
-        gyr_radps=grid.hold_next(samples.gyr_radps),
+        acc_mps2=fill(samples.acc_mps2),
+        gyr_radps=fill(samples.gyr_radps),
         mag=grid.interpolate(samples.mag),
         free_acc_mps2=grid.interpolate(samples.free_acc_mps2),
         attitude=grid.interpolate_rotation(samples.attitude),
         pressure_pa=grid.interpolate(samples.pressure_pa),
         device=samples.device,
+        averaged=samples.averaged,
     )
 
 

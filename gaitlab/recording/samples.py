@@ -48,6 +48,8 @@ class Samples:
         How the file writes the device's orientation, for people.
     n_wraps : int
         How often the counter wrapped.
+    averaged : bool
+        See ``Sensor``.
     """
 
     file: InputFile
@@ -64,6 +66,7 @@ class Samples:
     pressure_pa: Floats | None = None
     orientation_from: str | None = None
     n_wraps: int = 0
+    averaged: bool = True
     findings: tuple[Finding, ...] = field(default=())
 
     @property

@@ -16,7 +16,7 @@ from gaitlab.recording.samples import Packets, Rates, Samples
 
 
 def samples_of(file: InputFile, packet: Packets, rate: Rate, acc_mps2: Floats, gyr_radps: Floats) -> Samples:
-    """Samples of one sensor."""
+    """Samples of one sensor, taken at instants: none of these devices says that it integrates on board."""
     return Samples(
         file,
         "table of a public data set",
@@ -25,6 +25,7 @@ def samples_of(file: InputFile, packet: Packets, rate: Rate, acc_mps2: Floats, g
         Rates(header_hz=rate.hz),
         acc_mps2=acc_mps2,
         gyr_radps=gyr_radps,
+        averaged=False,
     )
 
 

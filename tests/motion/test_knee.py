@@ -112,7 +112,8 @@ def test_a_longer_recording_does_not_loosen_the_knee() -> None:
     assert np.abs(knee.raw_position_m).max() > 100.0
     assert knee.link is not None
     assert knee.link.unexplained < 0.12
-    foot = track_foot(walk.recording.sensors[Placement.LEFT_FOOT], knee.time_s)
+    at = Placement.LEFT_FOOT
+    foot = track_foot(walk.recording.sensors[at], walk.recording.time_s(at))
     assert np.abs(knee.position_m[-1] - knee.position_m[0] - foot.position_m[-1]).max() < 0.3
 
 

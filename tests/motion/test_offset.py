@@ -28,7 +28,10 @@ def _sensor(acc: Floats, gyr: Floats) -> Sensor:
 
 def test_the_papers_second_is_taken_where_the_person_stands_then() -> None:
     acc, gyr = _signals((0.5, 6.0))
-    assert find_standing(acc, gyr, 100.0) == (200, 300, True)
+    start, end, standing = find_standing(acc, gyr, 100.0)
+    assert standing
+    assert start <= 200 < 300 <= end
+    assert find_offsets(_sensor(acc, gyr), acc, gyr).as_in_paper
 
 
 @pytest.mark.parametrize("still", [(4.5, 6.0), (8.2, 9.9), (0.0, 1.5)])

@@ -1,0 +1,69 @@
+"""What is uncertain of a foot's displacement from rest to rest."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gaitlab.motion.heading import heading_change
+from gaitlab.motion.model import FootMotion, Motion, Rests
+from gaitlab.motion.passages import leaving
+from gaitlab.recording.model import Bools, Floats
+
+
+@dataclass(frozen=True)
+class DisplacementParams:
+    """What is uncertain beside the path's own covariance.
+
+    Attributes
+    ----------
+    scale_sd : float
+        Shared by all displacements: the accelerometer's scale and the instant within its interval that a sample speaks of
+        (half an interval of 10 ms is 1.3 cm of a stride).
+    lever_m : float
+        The sensor may sit so far from the point of the foot that a stride is measured at: 2.6 cm before the middle of
+        ankle and toe in ``mtw-leg-vicon``. It counts where the foot turns.
+    """
+
+    scale_sd: float = 0.006
+    lever_m: float = 0.03
+
+
+def foot_motion(
+    moved: dict[str, Any],
+    free: Motion,
+    rests: Rests,
+    step_covariance_m2: Floats,
+    place_covariance_m2: Floats,
+    level: Bools,
+    params: DisplacementParams | None = None,
+) -> FootMotion:
+    """A foot's motion: ``free`` with what of it has changed, its rests, and the uncertainty of its displacements."""
+    p = params or DisplacementParams()
+    motion = Motion(**(vars(free) | moved))
+    step = np.diff(motion.position_m[rests.moment], axis=0)[:, :2]
+    length = np.sqrt(np.einsum("ij,ij->i", step, step))
+    along = np.where((length > 0.1)[:, None], step / np.maximum(length, 1e-9)[:, None], np.sqrt(0.5))
+    variance = np.einsum("ki,kij,kj->k", along, step_covariance_m2[:, :2, :2], along)
+    turn = heading_change(motion, rests) if len(rests) else np.zeros(0)
+    variance += (2.0 * p.lever_m * np.sin(0.5 * turn)) ** 2 + (p.scale_sd * length) ** 2
+    return FootMotion(
+        **vars(motion),
+        rests=rests,
+        displacement_sd_m=np.sqrt(variance),
+        scale_sd=p.scale_sd,
+        doubtful_share=_doubtful_share(free, rests),
+        step_covariance_m2=step_covariance_m2,
+        place_covariance_m2=place_covariance_m2,
+        level=level,
+    )
+
+
+def _doubtful_share(free: Motion, rests: Rests) -> Floats:
+    """Share of lost or saturated rows in each movement from rest to rest."""
+    leave, reach = leaving(rests)[:-1], rests.start[1:]
+    bad = np.concatenate([[0], np.cumsum(~free.received | free.saturated)])
+    share: Floats = (bad[reach] - bad[leave]) / np.maximum(reach - leave, 1)
+    return share
