@@ -38,6 +38,10 @@ def _roughness() -> Floats:
     return rough
 
 
+_AT_OBSERVED = _value(np.arange(OBSERVED) / OBSERVED)
+_ROUGHNESS = _roughness()
+
+
 @dataclass(frozen=True, eq=False)
 class DriftCurve:
     """A cubic spline with equal pieces over the rows from ``first`` on: position error of an integrated path.
@@ -108,12 +112,12 @@ class DriftCurve:
         """
         _, m, d = normals.shape
         c = columns.shape[-1]
-        basis = _value(np.arange(OBSERVED) / OBSERVED)
-        design = normals.reshape(-1, OBSERVED, m, 1, d) * basis[:, None, :, None]
+        design = normals.reshape(-1, OBSERVED, m, 1, d) * _AT_OBSERVED[:, None, :, None]
         design = design.reshape(self.n_pieces, OBSERVED * m, 4 * d)
         flat = columns.reshape(self.n_pieces, OBSERVED * m, c)
-        rough = np.kron(_roughness() / (self.accel_density * self.piece_s**3), np.eye(d))
-        local = design.transpose(0, 2, 1) @ design + rough
+        local = design.transpose(0, 2, 1) @ design
+        for axis in range(d):
+            local[:, axis::d, axis::d] += _ROUGHNESS / (self.accel_density * self.piece_s**3)
         load = design.transpose(0, 2, 1) @ flat
         size, width = (self.n_pieces + 3) * d, 4 * d
         band, right = np.zeros((width, size)), np.zeros((size, c))
@@ -130,7 +134,7 @@ class DriftCurve:
 
     def observed(self, coefficients: Floats) -> Floats:
         """The curve at its observed rows, shape (k, d), from coefficients (n_pieces + 3, d)."""
-        return self._mixed(_value(np.arange(OBSERVED) / OBSERVED), coefficients)
+        return self._mixed(_AT_OBSERVED, coefficients)
 
     def position_and_velocity(self, coefficients: Floats) -> tuple[Floats, Floats]:
         """The curve and its slope in every row of the recording, shape (n_rows, d); straight beyond its ends."""

@@ -170,28 +170,19 @@ def fit_rigid_link(pair: Pair, curve: DriftCurve, params: RigidParams | None = N
     series = [pair.leg_m, pair.leg_axes.reshape(k, 9), pair.foot_m, pair.foot_axes.reshape(k, 9)]
     drifts, gram = curve.fit(weight, weight * np.concatenate(series, axis=1)[:, None, :])
     precision = p.levers.precision(pair.leg_axes)
-    yaw = _best_heading(gram, precision, p)
-    cost, levers = _cost(gram, np.array([yaw]), precision)
-    mixture = np.tensordot(np.concatenate([[1.0], levers[0]]), _mixtures(np.array([yaw]))[0], 1)
+    flat = _PARTS.reshape(21, 72)
+    squares = (flat @ (gram @ _PARTS).reshape(21, 72).T).reshape(3, 7, 3, 7)
+    yaw = _best_heading(squares, precision, p)
+    cost, levers = _cost(squares, np.array([yaw]), precision)
+    mixture = np.concatenate([[1.0], levers[0]]) @ (
+        _heading(np.array([yaw])) @ flat.reshape(3, 7 * 72)
+    ).reshape(7, 72)
     count = 3 * max(1, int(np.count_nonzero(pair.weight)))
     misfit = float(np.sqrt(max(cost[0], 0.0) / count))
     movement = float(np.sqrt(np.trace(gram[12:15, 12:15]) / count))
-    return RigidFit(yaw, drifts[:, 0] @ mixture, levers[0, 3:], misfit, misfit / max(movement, 1e-9))
-
-
-def _mixtures(yaw: Floats) -> Floats:
-    """How the 24 series make the distance between the two ankles: by itself and per unit of each lever entry.
-
-    Shape (len(yaw), 7, 24, 3): constant part, three entries of the foot's lever, three of the leg's; series; axis.
-    """
-    turn = yaw_matrices(yaw).transpose(0, 2, 1)
-    mix = np.zeros((len(yaw), 7, 24, 3))
-    mix[:, 0, :3] = turn
-    mix[:, 0, 12:15] = -np.eye(3)
-    for m in range(3):
-        mix[:, 1 + m, 15 + m :: 3] = -np.eye(3)
-        mix[:, 4 + m, 3 + m : 12 : 3] = turn
-    return mix
+    return RigidFit(
+        yaw, drifts[:, 0] @ mixture.reshape(24, 3), levers[0, 3:], misfit, misfit / max(movement, 1e-9)
+    )
 
 
 def yaw_matrices(yaw: Floats) -> Floats:
@@ -204,23 +195,51 @@ def yaw_matrices(yaw: Floats) -> Floats:
     return turn
 
 
-def _cost(gram: Floats, yaw: Floats, precision: Floats) -> tuple[Floats, Floats]:
-    """Least sum of squares at each heading, and the levers (foot, leg) that reach it, shape (len(yaw), 6)."""
-    mix = _mixtures(yaw)
-    flat = mix.reshape(len(yaw), 7, 72)
-    square = flat @ (gram @ mix).reshape(len(yaw), 7, 72).transpose(0, 2, 1)
+def _parts() -> Floats:
+    """How the 24 series make the distance between the two ankles, shape (3, 7, 24, 3).
+
+    Always, times the cosine and times the sine of the heading; by itself and per unit of three entries of the foot's
+    lever and three of the leg's; series; axis.
+    """
+    turn = np.zeros((3, 3, 3))
+    turn[0, 2, 2] = turn[1, 0, 0] = turn[1, 1, 1] = turn[2, 0, 1] = 1.0
+    turn[2, 1, 0] = -1.0
+    parts = np.zeros((3, 7, 24, 3))
+    parts[:, 0, :3] = turn
+    parts[0, 0, 12:15] = -np.eye(3)
+    for m in range(3):
+        parts[0, 1 + m, 15 + m :: 3] = -np.eye(3)
+        parts[:, 4 + m, 3 + m : 12 : 3] = turn
+    return parts
+
+
+_PARTS = _parts()
+
+
+def _heading(yaw: Floats) -> Floats:
+    """What the three parts are multiplied by, shape (len(yaw), 3)."""
+    return np.stack([np.ones_like(yaw), np.cos(yaw), np.sin(yaw)], axis=1)
+
+
+def _cost(squares: Floats, yaw: Floats, precision: Floats) -> tuple[Floats, Floats]:
+    """Least sum of squares at each heading, and the levers (foot, leg) that reach it, shape (len(yaw), 6).
+
+    ``squares`` (3, 7, 3, 7) are the products of the parts.
+    """
+    heading = _heading(yaw)
+    square = np.einsum("ni,nj,isjt->nst", heading, heading, squares)
     inner = square[:, 1:, 1:] + precision
     levers = -np.asarray(np.linalg.solve(inner, square[:, 1:, :1]), dtype=np.float64)[..., 0]
     cost: Floats = square[:, 0, 0] + np.sum(square[:, 0, 1:] * levers, axis=1)
     return cost, levers
 
 
-def _best_heading(gram: Floats, precision: Floats, p: RigidParams) -> float:
+def _best_heading(squares: Floats, precision: Floats, p: RigidParams) -> float:
     step = 2.0 * np.pi / p.headings
     yaw = np.linspace(0.0, 2.0 * np.pi, p.headings, endpoint=False)
-    best = float(yaw[np.argmin(_cost(gram, yaw, precision)[0])])
+    best = float(yaw[np.argmin(_cost(squares, yaw, precision)[0])])
     for _ in range(3):  # a parabola through three headings, ever closer
-        low, middle, high = _cost(gram, best + step * np.array([-1.0, 0.0, 1.0]), precision)[0]
+        low, middle, high = _cost(squares, best + step * np.array([-1.0, 0.0, 1.0]), precision)[0]
         bend = low - 2.0 * middle + high
         best += step * (float(np.clip(0.5 * (low - high) / bend, -1.0, 1.0)) if bend > 0.0 else 0.0)
         step *= 0.25
