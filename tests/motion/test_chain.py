@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -19,7 +21,7 @@ def test_states_and_covariances_are_those_of_the_whole_system(n: int, d: int) ->
         information[reach, reach] += rows.T @ rows
     at = [slice(k * d, (k + 1) * d) for k in range(n)]
     diagonal = np.stack([information[s, s] for s in at])
-    upper = np.array([information[a, b] for a, b in zip(at, at[1:], strict=False)]).reshape(n - 1, d, d)
+    upper = np.array([information[a, b] for a, b in itertools.pairwise(at)]).reshape(n - 1, d, d)
     solution = solve_chain(diagonal, upper, right.reshape(n, d))
     covariance = np.linalg.inv(information)
     np.testing.assert_allclose(solution.state.ravel(), covariance @ right, atol=1e-9)
