@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gaitlab.gait.sole import FootSwings
+from gaitlab.gait.sole import FootSwings, middle_of
 from gaitlab.motion.model import FootMotion, Indices
 from gaitlab.motion.windows import Windows, refined
 from gaitlab.recording.model import Bools, Floats
@@ -103,7 +103,7 @@ def find_events(foot: FootMotion, params: EventParams | None = None) -> FootEven
     off = _foot_off(swings, foot.rate_hz, p)
     contact = np.maximum(_contact(swings, foot, p), off)
     top = swings.speed_mps[swings.peak]
-    typical = float(np.median(top[top >= 0.3 * top.max()]))
+    typical = middle_of(top[top >= 0.3 * top.max()])
     start_s = float(foot.time_s[0])
     return FootEvents(
         start_s + off / foot.rate_hz, start_s + contact / foot.rate_hz, top < p.spot_share * typical
@@ -136,7 +136,7 @@ def _contact(swings: FootSwings, foot: FootMotion, p: EventParams) -> Floats:
     landing = Windows(swings.peak, lowest + 1).highest(foot.position_m[:, 2])
     impact = _share_past(foot.acceleration_mps2, landing, swings.whole.end - 1, p.impact_share)
     height = swings.pitch_radps[swings.slap]
-    flat = height < p.slap_share * np.sort(height)[len(height) // 2]
+    flat = height < p.slap_share * middle_of(height)
     peak = refined(swings.pitch_radps, swings.slap) - 0.5
     heard = [(slap, p.slap_late_s), (slap, p.slap_late_s), (peak, p.slap_peak_late_s), (fall, p.fall_late_s)]
     heel = np.where(np.isnan(heel), impact, heel) - p.heel_late_s * foot.rate_hz

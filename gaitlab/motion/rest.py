@@ -116,7 +116,14 @@ def unrest(
     of the gait cycle, W̃ and Ã their medians over the swings' peaks.
     """
     p = params or RestParams()
-    cycle = cycle_time(rate_radps, rate_hz, p) or p.default_cycle_s
+    return _unrest(
+        acceleration_mps2, rate_radps, rate_hz, cycle_time(rate_radps, rate_hz, p) or p.default_cycle_s, p
+    )
+
+
+def _unrest(
+    acceleration_mps2: Floats, rate_radps: Floats, rate_hz: float, cycle: float, p: RestParams
+) -> Floats | None:
     width = max(3, round(p.window_cycles * cycle * rate_hz))
     distance = max(1, round(0.6 * cycle * rate_hz))
     turning, moving = _moving_rms(rate_radps, width), _moving_rms(acceleration_mps2, width)
@@ -274,10 +281,11 @@ def restlessness(
     thighs in ``mtw-leg-vicon``.
     """
     p = params or RestParams()
-    level = unrest(acceleration_mps2, rate_radps, rate_hz, p)
+    cycle_s = cycle_time(rate_radps, rate_hz, p) or p.default_cycle_s
+    level = _unrest(acceleration_mps2, rate_radps, rate_hz, cycle_s, p)
     if level is None:
         return None
-    cycle = max(3, round((cycle_time(rate_radps, rate_hz, p) or p.default_cycle_s) * rate_hz))
+    cycle = max(3, round(cycle_s * rate_hz))
     active = np.flatnonzero(level > 0.3)
     if not len(active) or active[-1] - active[0] < cycle:
         return None
