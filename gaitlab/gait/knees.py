@@ -19,7 +19,7 @@ SWAY_SD_M: Mapping[LegPlace, float] = MappingProxyType(
     {LegPlace.SHANK: 0.0015, LegPlace.THIGH: 0.0025, LegPlace.UNKNOWN: 0.005}
 )
 """Uncertainty of the knee's movement across the line of walking within a rest of about 0.4 s: its RMS distance from
-that of the optical leg at the same place in six rests of ``mtw-leg-vicon`` was 0.0011 m on the upper shank, 0.0006 m
+that of the optical leg at the same place in six rests of ``mtw-leg-vicon`` was 0.0012 m on the upper shank, 0.0006 m
 above the ankle, 0.0024 m on the thigh. It is the skin's: in simulated walks the sensor's own share is 0.0001 m."""
 
 SHORTEST_REST_S = 0.05

@@ -8,7 +8,7 @@ import numpy as np
 
 from gaitlab.motion import ikizoglu2018
 from gaitlab.motion.drift import DriftCurve
-from gaitlab.motion.foot import method_motion
+from gaitlab.motion.free import method_motion
 from gaitlab.motion.integration import position_of
 from gaitlab.motion.leg import Pair, RigidFit, RigidParams, fit_rigid_link
 from gaitlab.motion.model import FootMotion, Indices, KneeMotion, LegLink, LegPlace, Motion
@@ -30,10 +30,10 @@ class KneeParams:
         The leg is looked at so often.
     sure_share : float
         A rigid link that leaves less than this share of the foot's movement needs no second look: it is a shank. In
-        ``mtw-leg-vicon`` four sensors on shanks leave 0.06–0.07, two on thighs 0.26–0.29.
+        ``mtw-leg-vicon`` four sensors on shanks leave 0.06–0.08, two on thighs 0.26–0.29.
     most_share : float
-        One that leaves more is no shank of this leg: shanks of simulated walks leave 0.05–0.14 (the most when they
-        walk fast), those of the other leg 0.35–0.51 there and 0.44–0.45 in ``mtw-leg-vicon``.
+        One that leaves more is no shank of this leg: shanks of simulated walks leave 0.04–0.15 (the most when they
+        walk fast), those of the other leg 0.34–0.51 there and 0.42–0.46 in ``mtw-leg-vicon``.
     gain : float
         Between them two links decide, where they leave less by at least this factor: 3.8 and 4.2 for the two thighs,
         at most 1.1 for every shank, real or simulated.

@@ -17,6 +17,7 @@ import numpy as np
 
 from gaitlab.motion.drift import DriftCurve
 from gaitlab.motion.model import FootMotion, Motion
+from gaitlab.motion.quaternions import matrices
 from gaitlab.recording.model import Floats
 
 
@@ -107,9 +108,9 @@ class Pair:
         weight = curve.counted / np.hypot(1.0, doubt / sd_m)
         return cls(
             leg.raw_position_m[rows],
-            matrices(leg.attitude[rows]),
+            matrices(leg.attitude[rows]).transpose(2, 0, 1),
             foot.position_m[there],
-            matrices(foot.attitude[there]),
+            matrices(foot.attitude[there]).transpose(2, 0, 1),
             foot.rate_radps[there],
             weight,
         )
@@ -140,18 +141,6 @@ class RigidFit:
     unexplained: float
 
 
-def matrices(q: Floats) -> Floats:
-    """Unit quaternions (k, 4) as rotation matrices (k, 3, 3)."""
-    w, x, y, z = q.T
-    matrix = np.empty((len(q), 3, 3))
-    matrix[:, 0, 0], matrix[:, 1, 1] = 1.0 - 2.0 * (y * y + z * z), 1.0 - 2.0 * (x * x + z * z)
-    matrix[:, 2, 2] = 1.0 - 2.0 * (x * x + y * y)
-    matrix[:, 0, 1], matrix[:, 1, 0] = 2.0 * (x * y - w * z), 2.0 * (x * y + w * z)
-    matrix[:, 0, 2], matrix[:, 2, 0] = 2.0 * (x * z + w * y), 2.0 * (x * z - w * y)
-    matrix[:, 1, 2], matrix[:, 2, 1] = 2.0 * (y * z - w * x), 2.0 * (y * z + w * x)
-    return matrix
-
-
 def white_sd(sd: float, lasting_s: float, curve: DriftCurve) -> float:
     """Standard deviation that an error which lasts is given where each observed row counts as a new one."""
     return sd * float(np.sqrt(max(1.0, lasting_s * curve.rate_hz / curve.spacing)))
@@ -171,7 +160,7 @@ def fit_rigid_link(pair: Pair, curve: DriftCurve, params: RigidParams | None = N
     drifts, gram = curve.fit(weight, weight * np.concatenate(series, axis=1)[:, None, :])
     precision = p.levers.precision(pair.leg_axes)
     flat = _PARTS.reshape(21, 72)
-    squares = (flat @ (gram @ _PARTS).reshape(21, 72).T).reshape(3, 7, 3, 7)
+    squares = (flat @ (gram @ _PARTS).reshape(21, 72).T).reshape(3, 7, 3, 7).transpose(0, 2, 1, 3)
     yaw = _best_heading(squares, precision, p)
     cost, levers = _cost(squares, np.array([yaw]), precision)
     mixture = np.concatenate([[1.0], levers[0]]) @ (
@@ -224,10 +213,11 @@ def _heading(yaw: Floats) -> Floats:
 def _cost(squares: Floats, yaw: Floats, precision: Floats) -> tuple[Floats, Floats]:
     """Least sum of squares at each heading, and the levers (foot, leg) that reach it, shape (len(yaw), 6).
 
-    ``squares`` (3, 7, 3, 7) are the products of the parts.
+    ``squares`` (3, 3, 7, 7) are the products of the parts.
     """
     heading = _heading(yaw)
-    square = np.einsum("ni,nj,isjt->nst", heading, heading, squares)
+    pairs = (heading[:, :, None] * heading[:, None, :]).reshape(-1, 9)
+    square = (pairs @ squares.reshape(9, 49)).reshape(-1, 7, 7)
     inner = square[:, 1:, 1:] + precision
     levers = -np.asarray(np.linalg.solve(inner, square[:, 1:, :1]), dtype=np.float64)[..., 0]
     cost: Floats = square[:, 0, 0] + np.sum(square[:, 0, 1:] * levers, axis=1)

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from gaitlab.motion.drift import DriftCurve
-from gaitlab.motion.leg import Pair, RigidFit, fit_rigid_link, matrices, yaw_matrices
-from gaitlab.motion.quaternions import rotate
+from gaitlab.motion.leg import Pair, RigidFit, fit_rigid_link, yaw_matrices
 from gaitlab.motion.thigh import fit_two_links
 from gaitlab.recording.model import Floats
 
@@ -84,14 +83,6 @@ def path_error_m(pair: Pair, curve: DriftCurve, fit: RigidFit, place_m: Floats) 
     path = pair.leg_m @ yaw_matrices(np.array([fit.yaw_rad]))[0].T - curve.observed(fit.drift)
     error = path - place_m[curve.rows]
     return float(np.linalg.norm(error - error.mean(axis=0), axis=1).max())
-
-
-def test_matrices_turn_vectors_as_their_quaternions_do() -> None:
-    rng = np.random.default_rng(0)
-    q = rng.normal(size=(20, 4))
-    q /= np.linalg.norm(q, axis=1, keepdims=True)
-    v = rng.normal(size=(20, 3))
-    np.testing.assert_allclose((matrices(q) @ v[:, :, None])[..., 0], rotate(q, v), atol=1e-12)
 
 
 def test_a_rigid_link_finds_heading_lever_and_path_of_a_shank() -> None:
