@@ -20,6 +20,7 @@ from gaitlab.motion.foot import track_foot
 from gaitlab.motion.frame import Frame, to_common_frame
 from gaitlab.motion.knee import track_knee
 from gaitlab.motion.model import FootMotion, KneeMotion
+from gaitlab.motion.together import with_one_heading
 from gaitlab.outcome import result_of
 from gaitlab.recording.model import Placement, Recording, Side
 from gaitlab.result import Result
@@ -83,6 +84,7 @@ def _reconstruct(recording: Recording, settings: Settings) -> tuple[Frame, dict[
         if placement.is_foot
     }
     course = find_course(motions)
+    motions = with_one_heading(motions, course)
     frame = to_common_frame(motions, course)
     knees = {}
     for placement, sensor in recording.sensors.items():

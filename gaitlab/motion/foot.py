@@ -14,7 +14,7 @@ from gaitlab.motion.integration import position_of, reset_at_rests
 from gaitlab.motion.model import FootMotion, Motion, Rests
 from gaitlab.motion.orientation import OrientationSource
 from gaitlab.motion.path import follow
-from gaitlab.motion.quaternions import midway, multiply, rotate
+from gaitlab.motion.quaternions import matrices, midway, multiply, rotate
 from gaitlab.motion.rest import find_rests
 from gaitlab.recording.model import Bools, Floats, Sensor
 
@@ -89,9 +89,7 @@ def _level_at_rests(
     Within a passage the orientation is the gyroscope's own: its error there is a slow drift, which the smoother knows, and
     no answer to the accelerations of the swing.
     """
-    force = strapdown.apply(
-        strapdown.matrices(midway(turned, calibrated.gyr_radps, rate_hz)), calibrated.acc_mps2
-    )
+    force = strapdown.apply(matrices(midway(turned, calibrated.gyr_radps, rate_hz)), calibrated.acc_mps2)
     end = np.maximum(rests.end, rests.start + 1)
     running = np.concatenate([np.zeros((1, 3)), np.cumsum(force, axis=0)])
     first = strapdown.upright(running[end[:1]] - running[rests.start[:1]])

@@ -12,7 +12,7 @@ from gaitlab.motion.integration import position_of, velocity_of
 from gaitlab.motion.model import Motion, Offsets
 from gaitlab.motion.offset import STANDARD_GRAVITY_MPS2, find_offsets
 from gaitlab.motion.orientation import OrientationSource, estimate
-from gaitlab.motion.quaternions import midway, rotate
+from gaitlab.motion.quaternions import matrices, midway, rotate
 from gaitlab.motion.signals import signals_of
 from gaitlab.recording.model import Floats, Sensor
 
@@ -55,7 +55,7 @@ def free_motion(sensor: Sensor, time_s: Floats, source: OrientationSource | None
 def moved(sensor: Sensor, time_s: Floats, calibrated: Calibrated, attitude: Floats) -> Motion:
     """Free acceleration of a sensor with a known orientation, and its uncorrected integrals."""
     rate_hz, offsets = sensor.rate_hz, calibrated.offsets
-    rotation = strapdown.matrices(midway(attitude, calibrated.gyr_radps, rate_hz))
+    rotation = matrices(midway(attitude, calibrated.gyr_radps, rate_hz))
     acceleration = remove_gravity(strapdown.apply(rotation, calibrated.acc_mps2), offsets)
     velocity = velocity_of(acceleration, rate_hz)
     position = position_of(velocity, rate_hz)

@@ -176,6 +176,31 @@ class FootMotion(Motion):
             place_covariance_m2=turn @ self.place_covariance_m2 @ turn.T,
         )
 
+    def redirected(self, yaw_rad: Floats) -> Self:
+        """The same movement with its heading corrected by ``yaw_rad``, shape (n,), which changes slowly.
+
+        The covariances stay: it is a matter of a degree.
+        """
+        c, s = np.cos(yaw_rad), np.sin(yaw_rad)
+
+        def turn(vectors: Floats) -> Floats:
+            turned = vectors.copy()
+            turned[:, 0] = c * vectors[:, 0] - s * vectors[:, 1]
+            turned[:, 1] = s * vectors[:, 0] + c * vectors[:, 1]
+            return turned
+
+        step = np.diff(self.position_m, axis=0, prepend=self.position_m[:1])
+        half = np.zeros((self.n_samples, 4))
+        half[:, 0], half[:, 3] = np.cos(0.5 * yaw_rad), np.sin(0.5 * yaw_rad)
+        return replace(
+            self,
+            attitude=multiply(half, self.attitude),
+            rate_radps=turn(self.rate_radps),
+            acceleration_mps2=turn(self.acceleration_mps2),
+            velocity_mps=turn(self.velocity_mps),
+            position_m=self.position_m[0] + np.cumsum(turn(step), axis=0),
+        )
+
     @property
     def rest_position_m(self) -> Floats:
         """Where the foot stands at each rest, shape (k, 3)."""

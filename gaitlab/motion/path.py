@@ -13,7 +13,7 @@ from gaitlab.motion.integration import position_of, reset_at_rests, velocity_of
 from gaitlab.motion.model import FootMotion, Indices, Motion, Rests
 from gaitlab.motion.offset import STANDARD_GRAVITY_MPS2
 from gaitlab.motion.passages import integrate, leaving
-from gaitlab.motion.quaternions import midway, multiply, rotate
+from gaitlab.motion.quaternions import matrices, midway, multiply, rotate
 from gaitlab.motion.smoother import Known, Smoothed, smooth
 from gaitlab.recording.model import Floats, Sensor
 
@@ -66,7 +66,7 @@ def follow(
     """
     p = params or PathParams()
     rate_hz = free.rate_hz
-    rotation = strapdown.matrices(midway(free.attitude, calibrated.gyr_radps, rate_hz))
+    rotation = matrices(midway(free.attitude, calibrated.gyr_radps, rate_hz))
     force = strapdown.apply(rotation, calibrated.acc_mps2)
     variance = _variance(force, sensor, p)
     passages = integrate(force, rotation, variance, rests, rate_hz, STANDARD_GRAVITY_MPS2)

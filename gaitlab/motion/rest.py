@@ -30,7 +30,8 @@ class RestParams:
     swing : float
         Between two rests the unrest reaches at least this share of a typical swing's; else the two are one rest.
     rim : float
-        A rest reaches as far as the unrest stays below ``rim`` times its least value (or times the floor).
+        A rest reaches as far as the unrest stays below ``rim`` times its least value (or times the floor). Beyond, the foot
+        already rolls: at twice the least the optical foot of ``mtw-leg-vicon`` moves at 3 cm/s, a centimetre a stride.
     cycle_range_s : tuple of float
         Shortest and longest gait cycle looked for.
     cycle_rate_hz : float
@@ -46,7 +47,7 @@ class RestParams:
     floor: float = 0.05
     prominence: float = 3.0
     swing: float = 0.15
-    rim: float = 2.0
+    rim: float = 1.4
     cycle_range_s: tuple[float, float] = (0.5, 3.0)
     cycle_rate_hz: float = 40.0
     default_cycle_s: float = 1.1

@@ -1,4 +1,4 @@
-"""Orientation from the gyroscope alone, made level by gravity; and the rotations of whole recordings as matrices."""
+"""Orientation from the gyroscope alone, made level by gravity."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
-from gaitlab.motion.quaternions import multiply, rotate
+from gaitlab.motion.quaternions import matrices, multiply, rotate
 from gaitlab.recording.model import Floats
 
 _BLOCK = 16
@@ -87,19 +87,6 @@ def small_rotation(vector_rad: Floats) -> Floats:
     q[:, 0] = np.cos(angle)
     q[:, 1:] = half * np.sinc(angle / np.pi)[:, None]
     return q
-
-
-def matrices(q: Floats) -> Floats:
-    """Rotation matrices, sensor to world, of unit quaternions (n, 4); shape (3, 3, n)."""
-    w, x, y, z = q.T
-    wx, wy, wz = 2.0 * w * x, 2.0 * w * y, 2.0 * w * z
-    xx, xy, xz = 2.0 * x * x, 2.0 * x * y, 2.0 * x * z
-    yy, yz, zz = 2.0 * y * y, 2.0 * y * z, 2.0 * z * z
-    rotation = np.empty((3, 3, len(q)))
-    rotation[0, 0], rotation[0, 1], rotation[0, 2] = 1.0 - yy - zz, xy - wz, xz + wy
-    rotation[1, 0], rotation[1, 1], rotation[1, 2] = xy + wz, 1.0 - xx - zz, yz - wx
-    rotation[2, 0], rotation[2, 1], rotation[2, 2] = xz - wy, yz + wx, 1.0 - xx - yy
-    return rotation
 
 
 def apply(rotation: Floats, vectors: Floats) -> Floats:

@@ -22,6 +22,12 @@ def rows_of(legs: Sequence[LegCheck]) -> tuple[Row, ...]:
     what = "stride length against the optical mid-foot"
     goals = (Goal("MAE", high=0.8), Goal("SD", high=1.2))
     rows = [length_row("stride_length", what, joined([one.error_m for one in own]), 1, goals)]
+    straight = joined([one.error_m[~one.turning] for one in own])
+    rows.append(length_row("stride_length_straight", "  the same, strides that do not turn", straight))
+    lever = joined([one.at_point_m - one.optical_m for one in own])
+    rows.append(
+        length_row("stride_length_lever", "  the same, one constant lever arm to the mid-foot", lever)
+    )
     if device:
         rows.append(
             length_row("stride_length_device", "  the same with the device's orientation", joined(device))

@@ -9,10 +9,12 @@ import numpy as np
 
 from gaitlab.gait.measurement import TWO_SIDED_95
 from gaitlab.gait.strides import FootGait
+from gaitlab.motion.model import Indices
+from gaitlab.motion.quaternions import matrices
 from gaitlab.recording.model import Bools, Floats
 from gaitlab.validation.model import Cell, Column, Figure, Goal, Row
 from gaitlab.validation.statistics import CM, mean_absolute, mean_and_sd, share
-from gaitlab.validation.truth import OpticalPath
+from gaitlab.validation.truth import OpticalPath, fit_lever
 
 STRIDE_COLUMNS = (
     Column("recording"),
@@ -42,6 +44,9 @@ class StrideCheck:
         As in the result.
     marked : ndarray of bool
         The analysis counts lost or saturated rows in it.
+    at_point_m : ndarray
+        Our length for the optical point instead of the sensor: moved there by one lever arm, in the sensor's frame, that
+        is fitted to the paths of all these strides.
     """
 
     start_s: Floats
@@ -51,6 +56,7 @@ class StrideCheck:
     optical_m: Floats
     turning: Bools
     marked: Bools
+    at_point_m: Floats
 
     @property
     def error_m(self) -> Floats:
@@ -88,7 +94,28 @@ def check_strides(foot: FootGait, optical: OpticalPath) -> StrideCheck:
         truth[seen],
         foot.turning[seen],
         np.asarray(foot.motion.doubtful_share[seen] > 0.0),
+        _at_point(foot, seen, optical),
     )
+
+
+def _at_point(foot: FootGait, seen: Indices, optical: OpticalPath) -> Floats:
+    """Lengths of strides of the optical point, by our path and a fitted lever arm."""
+    if not len(seen):
+        return np.zeros(0)
+    motion = foot.motion
+    rows = [
+        np.round((at[seen] - motion.time_s[0]) * motion.rate_hz).astype(np.intp)
+        for at in (foot.start_s, foot.end_s)
+    ]
+    spans = [np.arange(a, b + 1) for a, b in zip(*rows, strict=True)]
+    every, stride = np.concatenate(spans), np.repeat(np.arange(len(spans)), [len(one) for one in spans])
+    truth = optical.at(motion.time_s[every])
+    known = np.isfinite(truth).all(axis=1)
+    every, stride, truth = every[known], stride[known], truth[known]
+    rotation = np.moveaxis(matrices(motion.attitude), 2, 0)
+    fit = fit_lever(motion.position_m[every], rotation[every], truth, stride, start_is_mean=True)
+    ends = [motion.position_m[row] + rotation[row] @ fit.lever_m for row in rows]
+    return np.asarray(np.linalg.norm((ends[1] - ends[0])[:, :2], axis=1))
 
 
 def length_row(

@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from gaitlab.motion.extrema import prominent_peaks
 from gaitlab.motion.foot import track_foot
+from gaitlab.motion.free import free_motion
 from gaitlab.motion.integration import reset_at_rests, velocity_of
 from gaitlab.motion.model import Rests
 from gaitlab.motion.rest import cycle_time, find_rests, no_rests, rest_evidence, restlessness
@@ -106,7 +107,6 @@ def test_real_feet_have_one_rest_in_every_hand_checked_stance(data_dir: Path) ->
 
 
 def test_a_foot_comes_to_rest_and_a_shank_does_not(data_dir: Path) -> None:
-    from gaitlab.motion.foot import free_motion
 
     def least(device: str) -> float:
         path = data_dir / "mtw-leg-vicon" / f"S02-Trial-Walk-1-000_{device}.txt"

@@ -9,12 +9,11 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from gaitlab.motion.free import calibrate
-from gaitlab.motion.quaternions import angular_rate, conjugate, midway, multiply, rotate
+from gaitlab.motion.quaternions import angular_rate, conjugate, matrices, midway, multiply, rotate
 from gaitlab.motion.strapdown import (
     apply,
     integrate_rate,
     level_throughout,
-    matrices,
     small_rotation,
     upright,
 )
