@@ -9,10 +9,8 @@ import json
 import os
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
-
-Read = Callable[[], object]
 
 
 def one_core() -> None:
@@ -67,6 +65,6 @@ def serve(
         say(answer)
 
 
-def say(answer: dict[str, object]) -> None:
+def say(answer: Mapping[str, object]) -> None:
     """One line of JSON to whoever started this process."""
     print(json.dumps(answer), flush=True)
