@@ -79,7 +79,9 @@ def _check(recording: Recording, settings: Settings) -> None:
 def _reconstruct(recording: Recording, settings: Settings) -> tuple[Frame, dict[Side, KneeMotion], Course]:
     """Foot paths, knee paths and the course, in one world frame."""
     motions = {
-        placement.side: track_foot(sensor, recording.time_s(placement), settings.method, settings.orientation)
+        placement.side: track_foot(
+            sensor, recording.time_s(placement), settings.method, settings.orientation, settings.anchor
+        )
         for placement, sensor in recording.sensors.items()
         if placement.is_foot
     }

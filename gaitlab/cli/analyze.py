@@ -25,7 +25,10 @@ def run(chosen: argparse.Namespace) -> int:
     if chosen.out == "-" and sys.stdout is None:
         raise InputError("cannot_write", "Standard output is closed.", "Give --out the name of a file.")
     recording = read_recording(*chosen.paths, placements=named or None, rate_hz=chosen.rate)
-    analysis = analyze(recording, Settings(method=chosen.method, course_m=chosen.course))
+    settings = Settings(
+        method=chosen.method, course_m=chosen.course, closed=chosen.closed, way_m=chosen.known_way
+    )
+    analysis = analyze(recording, settings)
     outputs = _outputs(chosen, analysis)
     write_files(outputs, [*chosen.paths, *named.values()])
     if chosen.out == "-":

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 METHODS = ("gaitlab", "ikizoglu2018")
 PLACEMENTS = ("left_foot", "right_foot", "left_knee", "right_knee")
-VALIDATION_SETS = ("10m-walk", "leg-vicon", "foot-mocap", "foot-loop", "all")
+VALIDATION_SETS = ("10m-walk", "leg-vicon", "foot-mocap", "foot-loop", "all", "coverage")
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -70,6 +70,15 @@ def _analyze(commands: Commands) -> None:
     )
     command.add_argument("--method", choices=METHODS, default=METHODS[0], help="default: %(default)s")
     command.add_argument(
+        "--closed", action="store_true", help="use that each foot ends where it began; the result says so"
+    )
+    command.add_argument(
+        "--known-way",
+        type=_positive,
+        metavar="M",
+        help="use that the farthest place is M metres from the start; the result says so",
+    )
+    command.add_argument(
         "--out", type=_path, metavar="result.json", help="write the result as JSON; - for standard output"
     )
     command.add_argument(
@@ -109,17 +118,22 @@ def _validate(commands: Commands) -> None:
         help="tell how far the figures are from the truth, on recordings that bring it with them",
         description="Analyse a folder of public recordings whose truth is known and print the table of errors beside the"
         " figures to reach. The recordings are found by the pattern of their names; one that cannot be used is listed with"
-        " the reason, and the others count.",
+        " the reason, and the others count. The set coverage needs no folder: it simulates walks and tells how many of the"
+        " 95 % intervals hold the truth.",
     )
     command.add_argument("set", choices=VALIDATION_SETS, metavar="SET", help=", ".join(VALIDATION_SETS))
     command.add_argument(
-        "folder", type=_path, metavar="DIR", help="folder of the recordings; for all: the folder above"
+        "folder",
+        type=_path,
+        nargs="?",
+        metavar="DIR",
+        help="folder of the recordings; for all: the folder above; for coverage: none",
     )
     command.add_argument(
         "--json", type=_path, nargs="?", const="-", metavar="FILE", help="write JSON; - or nothing: print it"
     )
     command.add_argument("--trials", action="store_true", help="also each trial, stride or gait cycle")
-    command.set_defaults(run=_late("validate", "run"))
+    command.set_defaults(run=_late("validate", "run"), wrong_usage=command.error)
 
 
 def _demo(commands: Commands) -> None:

@@ -85,7 +85,7 @@ def step_length(feet: Mapping[Side, FootGait], steps: Steps, stood_together: boo
         reason = ONE_FOOT.format(side=missing[0]) if missing else APART
         return [not_determinable(d.STEP_LENGTH, side, reason) for side in MeasuredSide]
     params, steady = FrameParams(), _first_steps(steps)
-    common = float(np.hypot(params.standing_stagger_sd_m, _drift_between(feet)))
+    common = float(np.hypot(params.standing_stagger_sd_m, _drift_between(feet)[0]))
     left, right = (
         mean_of(
             d.STEP_LENGTH,
@@ -124,7 +124,7 @@ def step_width(feet: Mapping[Side, FootGait], steps: Steps, stood_together: bool
     if not len(widths):
         return [not_determinable(d.STEP_WIDTH, both, NO_STEP)]
     params = FrameParams()
-    sd = float(np.hypot(params.standing_width_sd_m, _drift_between(feet)))
+    sd = float(np.hypot(params.standing_width_sd_m, _drift_between(feet)[1]))
     value = float(widths.mean())
     if sd > WIDTH_SD_M:
         reason = (
@@ -150,14 +150,14 @@ def _mean_independent(foot: FootGait) -> float:
     return float(np.sqrt(np.sum(independent_sd(foot)[chosen] ** 2)) / n)
 
 
-def _drift_between(feet: Mapping[Side, FootGait]) -> float:
-    """How far the two feet's paths may have drifted apart by the middle of the first straight part, in metres, per axis."""
-    total = 0.0
+def _drift_between(feet: Mapping[Side, FootGait]) -> tuple[float, float]:
+    """How far the two feet's paths may have drifted apart by the middle of the first straight part, in metres, along and
+    across the line of walking."""
+    along, across = 0.0, 0.0
     for foot in feet.values():
         first = foot.part == 0
         half_way = 0.5 * float(foot.length_m[first].sum())
-        total += (
-            0.25 * float(np.sum(independent_sd(foot)[first] ** 2))
-            + (0.5 * FrameParams().heading_sd_rad * half_way) ** 2
-        )
-    return float(np.sqrt(total))
+        random = 0.25 * float(np.sum(independent_sd(foot)[first] ** 2))
+        along += random
+        across += random + (0.5 * FrameParams().heading_sd_rad * half_way) ** 2
+    return float(np.sqrt(along)), float(np.sqrt(across))

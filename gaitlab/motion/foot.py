@@ -11,9 +11,10 @@ from gaitlab.motion.displacement import foot_motion
 from gaitlab.motion.free import Calibrated, calibrate, method_motion, moved, orientation
 from gaitlab.motion.heading import heading_change
 from gaitlab.motion.integration import position_of, reset_at_rests
+from gaitlab.motion.magnetometer import with_field
 from gaitlab.motion.model import FootMotion, Motion, Rests
 from gaitlab.motion.orientation import OrientationSource
-from gaitlab.motion.path import follow
+from gaitlab.motion.path import Anchor, follow
 from gaitlab.motion.quaternions import matrices, midway, multiply, rotate
 from gaitlab.motion.rest import find_rests
 from gaitlab.recording.model import Bools, Floats, Sensor
@@ -32,7 +33,11 @@ class StrideEvidence:
 
 
 def track_foot(
-    sensor: Sensor, time_s: Floats, method: str = "gaitlab", source: OrientationSource | None = None
+    sensor: Sensor,
+    time_s: Floats,
+    method: str = "gaitlab",
+    source: OrientationSource | None = None,
+    anchor: Anchor | None = None,
 ) -> FootMotion:
     """Reconstruct how a foot moved.
 
@@ -46,6 +51,8 @@ def track_foot(
         ``gaitlab``, or ``ikizoglu2018`` for the paper to the letter.
     source : OrientationSource or None
         Where the orientation comes from; None lets the data decide.
+    anchor : Anchor or None
+        What is known of the course and is to be used; the paper's method uses nothing of the kind.
     """
     if method == "ikizoglu2018":
         return ikizoglu2018.track_foot(method_motion(sensor, time_s, method, source))
@@ -62,7 +69,7 @@ def track_foot(
     if turned is not None:
         attitude, tilt_change = _level_at_rests(turned, calibrated, rests, sensor.rate_hz)
         free = replace(free, attitude=attitude)
-    return follow(sensor, calibrated, free, rests, tilt_change)
+    return with_field(follow(sensor, calibrated, free, rests, tilt_change, anchor), sensor.mag)
 
 
 def _best_source(sensor: Sensor, calibrated: Calibrated) -> OrientationSource:

@@ -26,15 +26,16 @@ class FrameParams:
     standing_s : float
         The feet stand together where both rest for at least this long at once before they leave.
     heading_sd_rad : float
-        Standard uncertainty of a foot's direction of walking, drift of the heading included; 1°: on ``mtw-10m-walk``
-        the two feet's ends differ across the line by 0.41 m (RMS) after 20 m, which is 1.2°.
+        Standard uncertainty of a foot's direction of walking against the other's, what is left of the heading's drift
+        included; 0.5°: on ``mtw-10m-walk`` the ends of the two feet scatter across the line by 0.12 m against each other
+        after 20 m, their different places while standing included.
     """
 
     standing_width_m: float = 0.17
     standing_width_sd_m: float = 0.05
-    standing_stagger_sd_m: float = 0.03
+    standing_stagger_sd_m: float = 0.04
     standing_s: float = 0.5
-    heading_sd_rad: float = 0.017
+    heading_sd_rad: float = 0.008
 
 
 @dataclass(frozen=True, eq=False)

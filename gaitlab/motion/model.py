@@ -135,6 +135,27 @@ class Motion:
         return replace(self, position_m=self.position_m + shift_m)
 
 
+@dataclass(frozen=True)
+class FieldEvidence:
+    """What the magnetic field at the rests of a foot shows, and what came of it.
+
+    Attributes
+    ----------
+    used : bool
+        The heading's drift was corrected by it.
+    scatter_rad, strength_spread : float
+        About a steady drift of the heading; as a share of the mean.
+    drift_radps, drift_sd_radps : float
+        Drift of the gyroscope's heading against the field.
+    """
+
+    used: bool
+    scatter_rad: float
+    strength_spread: float
+    drift_radps: float
+    drift_sd_radps: float
+
+
 @dataclass(frozen=True, eq=False)
 class FootMotion(Motion):
     """A foot: its rests are where its velocity is known.
@@ -154,6 +175,8 @@ class FootMotion(Motion):
         Of its place at each rest against the first, drift of the heading included.
     level : ndarray of bool (k − 1,)
         The floor was taken to be level between the two rests.
+    field : FieldEvidence or None
+        What the magnetometer said of the heading; None where it said nothing.
     """
 
     rests: Rests
@@ -163,6 +186,7 @@ class FootMotion(Motion):
     step_covariance_m2: Floats
     place_covariance_m2: Floats
     level: Bools
+    field: FieldEvidence | None = None
 
     def turned(self, yaw_rad: float) -> Self:
         """As ``Motion.turned``; residual velocities and covariances turn with it."""

@@ -14,7 +14,7 @@ from gaitlab.motion.model import FootMotion, Indices, Motion, Rests
 from gaitlab.motion.offset import STANDARD_GRAVITY_MPS2
 from gaitlab.motion.passages import integrate, leaving
 from gaitlab.motion.quaternions import matrices, midway, multiply, rotate
-from gaitlab.motion.smoother import Known, Smoothed, smooth
+from gaitlab.motion.smoother import Fix, Known, Smoothed, smooth
 from gaitlab.recording.model import Floats, Sensor
 
 
@@ -47,12 +47,46 @@ class PathParams:
     blind_sd_m: float = 0.7
 
 
+@dataclass(frozen=True)
+class Anchor:
+    """What is known of the course and may be used for the path, where somebody says so; never by itself.
+
+    Attributes
+    ----------
+    closed : bool
+        Each foot's last rest is where its first was.
+    way_m : float or None
+        Horizontal distance from the first rest to the farthest.
+    closed_sd_m, way_sd_m : float
+        How exactly: after a turn the feet have changed sides; a foot rests within a step of a mark.
+    """
+
+    closed: bool = False
+    way_m: float | None = None
+    closed_sd_m: float = 0.2
+    way_sd_m: float = 0.1
+
+    def fixes(self, places_m: Floats) -> tuple[Fix, ...]:
+        """Statements for the smoother, from the places of rest as they are without, shape (k, 3)."""
+        fixes = []
+        if self.closed:
+            last = len(places_m) - 1
+            fixes += [Fix(last, axis, 0.0, self.closed_sd_m) for axis in ((1.0, 0.0), (0.0, 1.0))]
+        distance = np.linalg.norm(places_m[:, :2] - places_m[0, :2], axis=1)
+        far = int(np.argmax(distance))
+        if self.way_m is not None and distance[far] > 0.0:
+            x, y = (places_m[far, :2] - places_m[0, :2]) / distance[far]
+            fixes.append(Fix(far, (float(x), float(y)), self.way_m, self.way_sd_m))
+        return tuple(fixes)
+
+
 def follow(
     sensor: Sensor,
     calibrated: Calibrated,
     free: Motion,
     rests: Rests,
     tilt_change_rad: Floats,
+    anchor: Anchor | None = None,
     params: PathParams | None = None,
 ) -> FootMotion:
     """Path of a foot that rests at least twice.
@@ -63,6 +97,8 @@ def follow(
         With the orientation to begin with, level at the rests.
     tilt_change_rad : ndarray (k − 1, 2)
         See ``Known``.
+    anchor : Anchor or None
+        What is known of the course; None: nothing.
     """
     p = params or PathParams()
     rate_hz = free.rate_hz
@@ -73,10 +109,11 @@ def follow(
     gaps = _gap_variance(force, sensor, rests, p)
     passages = replace(passages, displacement_var=passages.displacement_var + gaps)
     last = leaving(rests)
-    known = Known(
-        calibrated.up, tilt_change_rad, calibrated.offsets.drift_sd_radps, (rests.end - rests.start) / rate_hz
-    )
+    rest_s = (rests.end - rests.start) / rate_hz
+    known = Known(calibrated.up, tilt_change_rad, calibrated.offsets.drift_sd_radps, rest_s)
     smoothed = smooth(passages, known, STANDARD_GRAVITY_MPS2)
+    if anchor is not None and (fixes := anchor.fixes(smoothed.place_m)):
+        smoothed = smooth(passages, replace(known, fixes=fixes), STANDARD_GRAVITY_MPS2)
     turn = _corrections(smoothed, rests, free.n_samples)
     acceleration = _corrected(force, rotation, turn, smoothed, rests)
     clock = np.cumsum(variance)

@@ -46,7 +46,7 @@ class SmootherParams:
         A passage whose velocity is off by more than this many standard deviations is as uncertain as it is off.
     """
 
-    rest_speed_mps: float = 0.015
+    rest_speed_mps: float = 0.01
     level_sd_m: float = 0.01
     level_m: float = 0.07
     slope_m: float = 0.002
@@ -92,6 +92,16 @@ class Smoothed:
     strangeness: Floats
 
 
+@dataclass(frozen=True)
+class Fix:
+    """A rest's place along a horizontal direction (unit vector), known from elsewhere, against the first rest's."""
+
+    rest: int
+    direction: tuple[float, float]
+    place_m: float
+    sd_m: float
+
+
 @dataclass(frozen=True, eq=False)
 class Known:
     """What the smoother is told besides the passages.
@@ -106,12 +116,15 @@ class Known:
         Of the gyroscope's offset about the vertical.
     rest_s : ndarray (k,)
         Durations of the rests.
+    fixes : tuple of Fix
+        What is known of places, if anything.
     """
 
     up: Floats
     tilt_change_rad: Floats
     drift_sd_radps: float
     rest_s: Floats
+    fixes: tuple[Fix, ...] = ()
 
 
 def smooth(
@@ -215,6 +228,10 @@ def _alone(passages: Passages, known: Known, gravity_mps2: float, p: SmootherPar
     first[[0, 1, 2], [0, 1, 2]] += 1e12
     first[HEADING, HEADING] += 1e12
     first[DRIFT, DRIFT] += known.drift_sd_radps**-2.0
+    for fix in known.fixes:
+        direction = np.array(fix.direction)
+        diagonal[fix.rest, :2, :2] += np.outer(direction, direction) / fix.sd_m**2
+        right[fix.rest, :2] += direction * (fix.place_m / fix.sd_m**2)
     return diagonal, right
 
 
