@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from gaitlab.motion import ikizoglu2018, strapdown
 from gaitlab.motion.displacement import foot_motion
-from gaitlab.motion.free import Calibrated, calibrate, method_motion, moved, orientation
+from gaitlab.motion.free import Calibrated, Oriented, calibrate, method_motion, moved, orientation, oriented
 from gaitlab.motion.heading import heading_change
 from gaitlab.motion.integration import position_of, reset_at_rests
 from gaitlab.motion.magnetometer import with_field
 from gaitlab.motion.model import FootMotion, Motion, Rests
+from gaitlab.motion.offset import STANDARD_GRAVITY_MPS2
 from gaitlab.motion.orientation import OrientationSource
 from gaitlab.motion.path import Anchor, follow
-from gaitlab.motion.quaternions import matrices, midway, multiply, rotate
+from gaitlab.motion.quaternions import multiply, rotate
 from gaitlab.motion.rest import find_rests
 from gaitlab.recording.model import Bools, Floats, Sensor
 
@@ -56,20 +57,28 @@ def track_foot(
     """
     if method == "ikizoglu2018":
         return ikizoglu2018.track_foot(method_motion(sensor, time_s, method, source))
-    calibrated = calibrate(sensor)
+    calibrated, rate_hz = calibrate(sensor), sensor.rate_hz
     source = source or _best_source(sensor, calibrated)
-    turned = None
-    if source is OrientationSource.STRAPDOWN:
-        turned = strapdown.integrate_rate(calibrated.gyr_radps, sensor.rate_hz)
-    free = moved(sensor, time_s, calibrated, orientation(sensor, calibrated, source, turned))
-    rests = _rests(free)
+    by_gyroscope = source is OrientationSource.STRAPDOWN
+    if by_gyroscope:
+        seen = oriented(calibrated, strapdown.integrate_rate(calibrated.gyr_radps, rate_hz), rate_hz)
+        up = strapdown.mean_force(seen.force_mps2, rate_hz)
+    else:
+        seen = oriented(calibrated, orientation(sensor, calibrated, source), rate_hz)
+        up = np.array([[0.0, 0.0, 1.0]])
+    gravity = up * (STANDARD_GRAVITY_MPS2 / np.linalg.norm(up, axis=1, keepdims=True))
+    found = find_rests(seen.force_mps2 - gravity, calibrated.gyr_radps, rate_hz)
+    tilt = np.zeros((len(found), 2))
+    if by_gyroscope:
+        attitude, tilt = _level(seen, up, found)
+        seen = oriented(calibrated, attitude, rate_hz)
+    free = moved(sensor, time_s, calibrated, seen)
+    kept = _kept(free, found)
+    rests = found if kept.all() else _joined(found, kept)
     if len(rests) < 2:
         return _unmoved(free, rests)
-    tilt_change = np.zeros((len(rests) - 1, 2))
-    if turned is not None:
-        attitude, tilt_change = _level_at_rests(turned, calibrated, rests, sensor.rate_hz)
-        free = replace(free, attitude=attitude)
-    return with_field(follow(sensor, calibrated, free, rests, tilt_change, anchor), sensor.mag)
+    foot = follow(sensor, calibrated, seen, free, rests, np.diff(tilt[kept], axis=0), anchor)
+    return with_field(foot, sensor.mag)
 
 
 def _best_source(sensor: Sensor, calibrated: Calibrated) -> OrientationSource:
@@ -79,35 +88,31 @@ def _best_source(sensor: Sensor, calibrated: Calibrated) -> OrientationSource:
     return OrientationSource.STRAPDOWN if calibrated.offsets.standing else OrientationSource.VQF
 
 
-def _rests(free: Motion) -> Rests:
-    """Rests between which the foot moved, by a path with the drift taken out in proportion to time."""
-    found = find_rests(free.acceleration_mps2, free.rate_radps, free.rate_hz)
+def _kept(free: Motion, found: Rests) -> Bools:
+    """Which rests are new ones, by a path with the drift taken out in proportion to time."""
     velocity, rests = reset_at_rests(free.raw_velocity_mps, found)
-    keep = _moved_before(free, rests, position_of(velocity, free.rate_hz))
-    return rests if keep.all() else _joined(rests, keep)
+    return _moved_before(free, rests, position_of(velocity, free.rate_hz))
 
 
-def _level_at_rests(
-    turned: Floats, calibrated: Calibrated, rests: Rests, rate_hz: float
-) -> tuple[Floats, Floats]:
-    """The gyroscope's orientation made level at every rest, the correction linear between two; and how much it
-    changes from rest to rest about the horizontal axes, shape (k − 1, 2).
+def _level(seen: Oriented, up: Floats, rests: Rests) -> tuple[Floats, Floats]:
+    """The gyroscope's orientation made level at every rest, the correction linear between two; and the correction at
+    each, about the horizontal axes, shape (k, 2). Without rests it is made level by the mean force.
 
     Within a passage the orientation is the gyroscope's own: its error there is a slow drift, which the smoother knows, and
     no answer to the accelerations of the swing.
     """
-    force = strapdown.apply(matrices(midway(turned, calibrated.gyr_radps, rate_hz)), calibrated.acc_mps2)
+    if not len(rests):
+        return strapdown.level_throughout(seen.attitude, up), np.zeros((0, 2))
     end = np.maximum(rests.end, rests.start + 1)
-    running = np.concatenate([np.zeros((1, 3)), np.cumsum(force, axis=0)])
+    running = np.concatenate([np.zeros((1, 3)), np.cumsum(seen.force_mps2, axis=0)])
     first = strapdown.upright(running[end[:1]] - running[rests.start[:1]])
     mean = rotate(first, running[end] - running[rests.start])
     tilt = 2.0 * strapdown.upright(mean)[:, 1:3]
-    rows = np.arange(len(turned))
-    correction = np.zeros((len(turned), 3))
+    rows = np.arange(len(seen.attitude))
+    correction = np.zeros((len(rows), 3))
     for k in range(2):
         correction[:, k] = np.interp(rows, rests.moment, tilt[:, k])
-    attitude = multiply(strapdown.small_rotation(correction), multiply(first, turned))
-    return attitude, np.diff(tilt, axis=0)
+    return multiply(strapdown.small_rotation(correction), multiply(first, seen.attitude)), tilt
 
 
 def _moved_before(

@@ -12,7 +12,7 @@ from gaitlab.motion.integration import position_of, velocity_of
 from gaitlab.motion.model import Motion, Offsets
 from gaitlab.motion.offset import STANDARD_GRAVITY_MPS2, find_offsets
 from gaitlab.motion.orientation import OrientationSource, estimate
-from gaitlab.motion.quaternions import matrices, midway, rotate
+from gaitlab.motion.quaternions import matrices, midway
 from gaitlab.motion.signals import signals_of
 from gaitlab.recording.model import Floats, Sensor
 
@@ -41,6 +41,31 @@ def calibrate(sensor: Sensor) -> Calibrated:
     return Calibrated(acc, signals.gyr_radps - np.array(offsets.gyr_radps), offsets)
 
 
+@dataclass(frozen=True, eq=False)
+class Oriented:
+    """A sensor in the world by some orientation.
+
+    Attributes
+    ----------
+    attitude : ndarray (n, 4)
+        Sensor to world, at the end of each sample's interval.
+    rotation : ndarray (3, 3, n)
+        The same in its middle.
+    force_mps2 : ndarray (n, 3)
+        Specific force, world.
+    """
+
+    attitude: Floats
+    rotation: Floats
+    force_mps2: Floats
+
+
+def oriented(calibrated: Calibrated, attitude: Floats, rate_hz: float) -> Oriented:
+    """Turn the specific force into the world: each sample by the orientation in the middle of its interval."""
+    rotation = matrices(midway(attitude, calibrated.gyr_radps, rate_hz))
+    return Oriented(attitude, rotation, strapdown.apply(rotation, calibrated.acc_mps2))
+
+
 def free_motion(sensor: Sensor, time_s: Floats, source: OrientationSource | None = None) -> Motion:
     """Movement of any sensor up to its uncorrected integrals: orientation, offsets, free acceleration.
 
@@ -49,14 +74,14 @@ def free_motion(sensor: Sensor, time_s: Floats, source: OrientationSource | None
     calibrated = calibrate(sensor)
     if source is None:
         source = OrientationSource.VQF if sensor.gyr_radps is not None else OrientationSource.DEVICE
-    return moved(sensor, time_s, calibrated, orientation(sensor, calibrated, source))
+    attitude = orientation(sensor, calibrated, source)
+    return moved(sensor, time_s, calibrated, oriented(calibrated, attitude, sensor.rate_hz))
 
 
-def moved(sensor: Sensor, time_s: Floats, calibrated: Calibrated, attitude: Floats) -> Motion:
+def moved(sensor: Sensor, time_s: Floats, calibrated: Calibrated, seen: Oriented) -> Motion:
     """Free acceleration of a sensor with a known orientation, and its uncorrected integrals."""
     rate_hz, offsets = sensor.rate_hz, calibrated.offsets
-    rotation = matrices(midway(attitude, calibrated.gyr_radps, rate_hz))
-    acceleration = remove_gravity(strapdown.apply(rotation, calibrated.acc_mps2), offsets)
+    acceleration = remove_gravity(seen.force_mps2, offsets)
     velocity = velocity_of(acceleration, rate_hz)
     position = position_of(velocity, rate_hz)
     return Motion(
@@ -65,8 +90,8 @@ def moved(sensor: Sensor, time_s: Floats, calibrated: Calibrated, attitude: Floa
         time_s,
         sensor.received,
         sensor.saturated,
-        attitude,
-        rotate(attitude, calibrated.gyr_radps),
+        seen.attitude,
+        strapdown.apply(matrices(seen.attitude), calibrated.gyr_radps),
         acceleration,
         velocity,
         position,
@@ -85,12 +110,8 @@ def method_motion(sensor: Sensor, time_s: Floats, method: str, source: Orientati
     return ikizoglu2018.free_motion(sensor, free_motion(sensor, time_s, source))
 
 
-def orientation(
-    sensor: Sensor, calibrated: Calibrated, source: OrientationSource, turned: Floats | None = None
-) -> Floats:
+def orientation(sensor: Sensor, calibrated: Calibrated, source: OrientationSource) -> Floats:
     """Orientation of each row, shape (n, 4), level but for a degree or two.
-
-    ``turned`` is what the gyroscope alone says, where it is known already.
 
     Raises
     ------
@@ -108,9 +129,9 @@ def orientation(
         return sensor.attitude
     if source is OrientationSource.VQF:
         return estimate(calibrated.acc_mps2, calibrated.gyr_radps, sensor.rate_hz)
-    if turned is None:
-        turned = strapdown.integrate_rate(calibrated.gyr_radps, sensor.rate_hz)
-    return strapdown.level_throughout(turned, calibrated.acc_mps2, sensor.rate_hz)
+    turned = strapdown.integrate_rate(calibrated.gyr_radps, sensor.rate_hz)
+    up = strapdown.mean_force(oriented(calibrated, turned, sensor.rate_hz).force_mps2, sensor.rate_hz)
+    return strapdown.level_throughout(turned, up)
 
 
 def remove_gravity(force: Floats, offsets: Offsets) -> Floats:

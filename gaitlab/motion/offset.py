@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import uniform_filter1d
 
 from gaitlab.motion.model import Indices, Offsets
 from gaitlab.recording.model import Bools, Floats, Sensor
@@ -48,13 +47,13 @@ class StandingParams:
 
 def _scatter(values: Floats, width: int) -> Floats:
     """Norm over the axes of the standard deviation in each window of ``width`` rows, by the window's first row."""
-    centred = values - values.mean(axis=0)
-    mean = uniform_filter1d(centred, width, axis=0, mode="nearest")
-    square = uniform_filter1d(centred**2, width, axis=0, mode="nearest")
-    variance = np.maximum(square - mean**2, 0.0).sum(axis=1)
-    half = width // 2
-    scatter: Floats = np.sqrt(variance[half : half + len(values) - width + 1])
-    return scatter
+    columns = np.ascontiguousarray(values.T) - values.mean(axis=0)[:, None]
+    square = np.einsum("ij,ij->j", columns, columns)
+    running = np.zeros((4, len(values) + 1))
+    np.cumsum(np.concatenate([columns, square[None]]), axis=1, out=running[:, 1:])
+    sums = (running[:, width:] - running[:, :-width]) / width
+    variance = sums[3] - np.einsum("ij,ij->j", sums[:3], sums[:3])
+    return np.asarray(np.sqrt(np.maximum(variance, 0.0)))
 
 
 def find_standing(

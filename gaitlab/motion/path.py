@@ -8,12 +8,12 @@ import numpy as np
 
 from gaitlab.motion import strapdown
 from gaitlab.motion.displacement import foot_motion
-from gaitlab.motion.free import Calibrated
+from gaitlab.motion.free import Calibrated, Oriented
 from gaitlab.motion.integration import position_of, reset_at_rests, velocity_of
 from gaitlab.motion.model import FootMotion, Indices, Motion, Rests
 from gaitlab.motion.offset import STANDARD_GRAVITY_MPS2
 from gaitlab.motion.passages import integrate, leaving
-from gaitlab.motion.quaternions import matrices, midway, multiply, rotate
+from gaitlab.motion.quaternions import cross, multiply
 from gaitlab.motion.smoother import Fix, Known, Smoothed, smooth
 from gaitlab.recording.model import Floats, Sensor
 
@@ -83,6 +83,7 @@ class Anchor:
 def follow(
     sensor: Sensor,
     calibrated: Calibrated,
+    seen: Oriented,
     free: Motion,
     rests: Rests,
     tilt_change_rad: Floats,
@@ -93,8 +94,10 @@ def follow(
 
     Parameters
     ----------
+    seen : Oriented
+        By the orientation to begin with, level at the rests.
     free : Motion
-        With the orientation to begin with, level at the rests.
+        What it gives without resets.
     tilt_change_rad : ndarray (k − 1, 2)
         See ``Known``.
     anchor : Anchor or None
@@ -102,8 +105,7 @@ def follow(
     """
     p = params or PathParams()
     rate_hz = free.rate_hz
-    rotation = matrices(midway(free.attitude, calibrated.gyr_radps, rate_hz))
-    force = strapdown.apply(rotation, calibrated.acc_mps2)
+    force, rotation = seen.force_mps2, seen.rotation
     variance = _variance(force, sensor, p)
     passages = integrate(force, rotation, variance, rests, rate_hz, STANDARD_GRAVITY_MPS2)
     gaps = _gap_variance(force, sensor, rests, p)
@@ -124,7 +126,7 @@ def follow(
     residual = np.concatenate([np.zeros((1, 3)), passages.velocity_mps])
     moved = {
         "attitude": attitude,
-        "rate_radps": rotate(attitude, calibrated.gyr_radps),
+        "rate_radps": free.rate_radps + cross(turn, free.rate_radps),
         "acceleration_mps2": acceleration,
         "velocity_mps": velocity,
         "position_m": position,
@@ -181,18 +183,9 @@ def _corrected(force: Floats, rotation: Floats, turn: Floats, smoothed: Smoothed
         np.searchsorted(rests.moment, np.arange(len(force)), "right") - 1, 0, len(rests) - 1
     )
     offset = smoothed.offset_mps2[row_passage]
-    acceleration: Floats = force + _cross(turn, force) - strapdown.apply(rotation, offset)
+    acceleration: Floats = force + cross(turn, force) - strapdown.apply(rotation, offset)
     acceleration[:, 2] -= STANDARD_GRAVITY_MPS2
     return acceleration
-
-
-def _cross(a: Floats, b: Floats) -> Floats:
-    """Row-wise vector product, shape (n, 3)."""
-    product = np.empty_like(b)
-    for k in range(3):
-        i, j = (k + 1) % 3, (k + 2) % 3
-        product[:, k] = a[:, i] * b[:, j] - a[:, j] * b[:, i]
-    return product
 
 
 def _through(

@@ -9,17 +9,13 @@ from gaitlab.recording.model import Floats
 
 def multiply(p: Floats, q: Floats) -> Floats:
     """Hamilton product p ⊗ q, shapes (..., 4): the rotation q first, then p."""
-    pw, px, py, pz = np.moveaxis(p, -1, 0)
-    qw, qx, qy, qz = np.moveaxis(q, -1, 0)
-    product: Floats = np.stack(
-        [
-            pw * qw - px * qx - py * qy - pz * qz,
-            pw * qx + px * qw + py * qz - pz * qy,
-            pw * qy - px * qz + py * qw + pz * qx,
-            pw * qz + px * qy - py * qx + pz * qw,
-        ],
-        axis=-1,
-    )
+    pw, px, py, pz = p[..., 0], p[..., 1], p[..., 2], p[..., 3]
+    qw, qx, qy, qz = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
+    product = np.empty(np.broadcast_shapes(p.shape, q.shape))
+    product[..., 0] = pw * qw - px * qx - py * qy - pz * qz
+    product[..., 1] = pw * qx + px * qw + py * qz - pz * qy
+    product[..., 2] = pw * qy - px * qz + py * qw + pz * qx
+    product[..., 3] = pw * qz + px * qy - py * qx + pz * qw
     return product
 
 
@@ -32,9 +28,18 @@ def conjugate(q: Floats) -> Floats:
 def rotate(q: Floats, v: Floats) -> Floats:
     """Turn vectors v, shape (n, 3), by unit quaternions q, shape (n, 4) or (4,)."""
     w, u = q[..., :1], q[..., 1:]
-    t = 2.0 * np.cross(u, v)
-    result: Floats = v + w * t + np.cross(u, t)
-    return result
+    t = 2.0 * cross(u, v)
+    turned: Floats = v + w * t + cross(u, t)
+    return turned
+
+
+def cross(a: Floats, b: Floats) -> Floats:
+    """Vector product, shapes (..., 3)."""
+    product = np.empty(np.broadcast_shapes(a.shape, b.shape))
+    for k in range(3):
+        i, j = (k + 1) % 3, (k + 2) % 3
+        product[..., k] = a[..., i] * b[..., j] - a[..., j] * b[..., i]
+    return product
 
 
 def matrices(q: Floats) -> Floats:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
-from gaitlab.motion.quaternions import matrices, multiply, rotate
+from gaitlab.motion.quaternions import multiply, rotate
 from gaitlab.recording.model import Floats
 
 _BLOCK = 16
@@ -61,22 +61,22 @@ LEVEL_WINDOW_S = 2.0
 """Where there are no rests yet, gravity is the mean force over about this time: two gait cycles."""
 
 
-def level_throughout(
-    attitude: Floats, acc_mps2: Floats, rate_hz: float, window_s: float = LEVEL_WINDOW_S
-) -> Floats:
-    """Orientation made level by the specific force averaged twice over ``window_s``, shape (n, 4).
-
-    A first guess for whoever has no rests yet: real accelerations tilt it by a degree or two.
-    """
-    width = min(len(attitude), max(3, round(window_s * rate_hz)))
-    force = apply(matrices(attitude), acc_mps2)
-    first = upright(
-        force.mean(axis=0, keepdims=True)
-    )  # what is left to do is small, whatever way the sensor sits
-    force = rotate(first, force)
+def mean_force(force_mps2: Floats, rate_hz: float, window_s: float = LEVEL_WINDOW_S) -> Floats:
+    """Specific force averaged twice over ``window_s``, shape (n, 3): a first guess of gravity, off by a degree or two
+    where real accelerations do not cancel."""
+    width = min(len(force_mps2), max(3, round(window_s * rate_hz)))
+    columns = np.ascontiguousarray(force_mps2.T)
     for _ in range(2):
-        force = uniform_filter1d(force, width, axis=0, mode="nearest")
-    return multiply(upright(force), multiply(first, attitude))
+        columns = uniform_filter1d(columns, width, axis=1, mode="nearest")
+    return np.ascontiguousarray(columns.T)
+
+
+def level_throughout(attitude: Floats, up: Floats) -> Floats:
+    """Orientation turned so that ``up``, shape (n, 3), becomes the vertical in every row, shape (n, 4)."""
+    first = upright(
+        up.mean(axis=0, keepdims=True)
+    )  # what is left to do is small, whatever way the sensor sits
+    return multiply(upright(rotate(first, up)), multiply(first, attitude))
 
 
 def small_rotation(vector_rad: Floats) -> Floats:
