@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from gaitlab.gait.measurement import Definition, MeasuredSide, Measurement, Status, measured, not_determinable
@@ -10,6 +12,9 @@ from gaitlab.recording.model import Floats, Side
 FEW_STRIDES = 6
 """Fewer gait cycles than this want attention: Motti Ader et al. 2020, Biosensors 10:128, for foot sensors in
 multiple sclerosis."""
+
+SAME_SCALE = ("length", "speed")
+"""Groups of parameters that both feet measure by the scale of one kind of sensor."""
 
 TOO_FEW = f"a mean of fewer than {FEW_STRIDES} says little."
 
@@ -32,7 +37,8 @@ def mean_of(
         return not_determinable(definition, MeasuredSide(side), reason)
     independent = np.broadcast_to(np.asarray(independent_sd, dtype=np.float64), (n,))
     sd = float(np.sqrt(np.sum(independent**2) / n**2 + common_sd**2))
-    return with_count(measured(definition, MeasuredSide(side), float(values.mean()), sd, n))
+    mean = measured(definition, MeasuredSide(side), float(values.mean()), sd, n)
+    return with_count(replace(mean, common_sd=float(common_sd)))
 
 
 def with_count(measurement: Measurement) -> Measurement:
@@ -45,6 +51,9 @@ def with_count(measurement: Measurement) -> Measurement:
 def of_both(left: Measurement, right: Measurement, *, a_mean: bool = True) -> Measurement:
     """Mean of the two sides, each side counting alike; not determinable where one of them is not.
 
+    The two sides' errors are independent, but for what is common to all strides of a length or speed: two sensors of a
+    kind share their scale and the meaning of their samples, and the mean of both keeps that.
+
     ``a_mean`` False where the sides are sums: then few strides are no reserve.
     """
     definition = left.definition
@@ -56,7 +65,9 @@ def of_both(left: Measurement, right: Measurement, *, a_mean: bool = True) -> Me
     if left.value is None or right.value is None or left.sd is None or right.sd is None:
         return not_determinable(definition, MeasuredSide.BOTH, "One side has no value.")
     value = 0.5 * (left.value + right.value)
-    sd = 0.5 * float(np.hypot(left.sd, right.sd))
+    shared = (left.common_sd, right.common_sd) if definition.group in SAME_SCALE else (0.0, 0.0)
+    own = left.sd**2 - shared[0] ** 2 + right.sd**2 - shared[1] ** 2
+    sd = 0.5 * float(np.sqrt(max(own, 0.0) + sum(shared) ** 2))
     both = measured(definition, MeasuredSide.BOTH, value, sd, left.n + right.n)
     if a_mean and min(left.n, right.n) < FEW_STRIDES:
         return both.with_attention(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -9,11 +10,10 @@ import numpy as np
 
 from gaitlab.gait import definitions as d
 from gaitlab.gait.averages import mean_of, of_both
-from gaitlab.gait.events import EventParams
 from gaitlab.gait.lengths import APART, NO_FOOT, NO_STEADY, chosen_strides, independent_sd
 from gaitlab.gait.measurement import Definition, MeasuredSide, Measurement, Status, measured, not_determinable
 from gaitlab.gait.strides import FootGait
-from gaitlab.gait.timing import LONGEST_STRIDE_S
+from gaitlab.gait.timing import LONGEST_STRIDE_S, REST_EDGE_SD_S, EventErrors, sd_in_mean
 from gaitlab.motion.course import Course
 from gaitlab.motion.frame import FrameParams
 from gaitlab.recording.model import Bools, Side
@@ -33,7 +33,10 @@ def speeds(feet: Mapping[Side, FootGait]) -> list[Measurement]:
             steady.append(not_determinable(d.STEADY_SPEED, MeasuredSide(side), reason))
             continue
         foot = feet[side]
-        velocity.append(_speed(d.STRIDE_VELOCITY, side, foot, foot.straight, NO_STEADY))
+        sound = foot.straight & ~foot.doubtful
+        velocity.append(
+            _speed(d.STRIDE_VELOCITY, side, foot, sound if sound.any() else foot.straight, NO_STEADY)
+        )
         steady.append(_speed(d.STEADY_SPEED, side, foot, chosen_strides(foot), NO_STEADY))
     both = of_both(*steady)
     if both.status is Status.NOT_DETERMINABLE:
@@ -51,8 +54,8 @@ def _speed(definition: Definition, side: Side, foot: FootGait, rows: Bools, reas
     usable = (duration > 0) & (duration <= LONGEST_STRIDE_S)
     k, duration = k[usable], duration[usable]
     values = foot.length_m[k] / duration
-    jitter = np.sqrt(2.0) * EventParams().sd_s(foot.motion.rate_hz) * values / duration
-    independent = np.hypot(independent_sd(foot)[k] / duration, jitter)
+    time_sd = sd_in_mean(k, EventErrors.at(foot.motion.rate_hz))
+    independent = np.hypot(independent_sd(foot)[k], time_sd * values) / duration
     common = foot.common_sd * float(values.mean()) if len(values) else 0.0
     return mean_of(definition, side, values, independent, common, reason)
 
@@ -65,12 +68,9 @@ def turns(course: Course) -> list[Measurement]:
         return [not_determinable(one, BOTH, reason) for one in (d.TURN_DURATION, d.TURN_ANGLE)]
     duration = float(np.mean([t.end_s - t.start_s for t in course.turns]))
     angle = float(np.mean([abs(np.degrees(t.angle_rad)) for t in course.turns]))
-    sd = np.sqrt(2.0) * EventParams().event_sd_s / np.sqrt(n)
     return [
-        measured(d.TURN_DURATION, BOTH, duration, float(sd), n),
-        measured(
-            d.TURN_ANGLE, BOTH, angle, 3.0 / np.sqrt(n), n
-        ),  # 3°: scatter of the heading in straight strides
+        measured(d.TURN_DURATION, BOTH, duration, math.sqrt(2.0) * REST_EDGE_SD_S, n),
+        measured(d.TURN_ANGLE, BOTH, angle, HEADING_SCATTER_DEG / math.sqrt(n), n),
     ]
 
 
@@ -101,7 +101,9 @@ def path_deviation(feet: Mapping[Side, FootGait], course: Course, stood_together
     centred = middle - middle.mean(axis=0)
     across = np.linalg.svd(centred, full_matrices=False)[2][1]
     deviation = centred @ across
-    sd = 0.5 * float(np.sqrt(sum(np.mean(independent_sd(foot) ** 2) for foot in feet.values() if len(foot))))
+    # a path whose strides err independently strays from its best line by σ²·n/15 (a Brownian motion without its trend)
+    strayed = [float(np.sum(independent_sd(foot)[foot.part == 0] ** 2)) / 15.0 for foot in feet.values()]
+    sd = 0.5 * math.sqrt(sum(strayed))
     n = int(sum(np.sum(foot.part == 0) for foot in feet.values()))
     return measured(d.STRAIGHTNESS, BOTH, float(deviation.std()), sd, n)
 

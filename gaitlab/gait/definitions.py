@@ -186,8 +186,7 @@ STRIDE_TIME_CV = _definition(
     "%",
     "variability",
     1,
-    "Standard deviation (n − 1) of the times from foot off to foot off in mid-walk, in % of their mean."
-    f" {_WITHOUT_MEASUREMENT}",
+    f"Standard deviation (n − 1) of the stride times in mid-walk, in % of their mean. {_WITHOUT_MEASUREMENT}",
     VARIABILITY,
 )
 STRIDE_LENGTH_CV = _definition(
@@ -205,7 +204,7 @@ STRIDE_VELOCITY_CV = _definition(
     "%",
     "variability",
     1,
-    "Standard deviation (n − 1) of stride length divided by the time from foot off to foot off in mid-walk, in % of its"
+    "Standard deviation (n − 1) of stride length divided by stride time in mid-walk, in % of its"
     " mean."
     f" {_WITHOUT_MEASUREMENT}",
     VARIABILITY,
@@ -235,7 +234,8 @@ TURN_DURATION = _definition(
     "s",
     "course",
     2,
-    "From the first foot's leaving the ground to turn to the last one's coming to rest after it; mean of the turns.",
+    "From the first foot's leaving its place of rest to turn to the last one's coming to rest after it; mean of the"
+    " turns.",
 )
 TURN_ANGLE = _definition(
     "turn_angle",

@@ -59,6 +59,8 @@ class Measurement:
         Why it wants attention or is not determinable; or the assumption it rests on.
     interval : tuple of 2 floats or None
         Its 95 % interval where that is not ``value`` ± 1.96 ``sd``.
+    common_sd : float
+        The part of ``sd`` that more strides do not make smaller.
     """
 
     definition: Definition
@@ -69,6 +71,7 @@ class Measurement:
     status: Status = Status.OK
     reason: str = ""
     interval: tuple[float, float] | None = None
+    common_sd: float = 0.0
 
     @property
     def ci95(self) -> tuple[float, float] | None:

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from gaitlab.gait import definitions as d
-from gaitlab.gait.events import EventParams
 from gaitlab.gait.lengths import independent_sd
-from gaitlab.gait.measurement import MeasuredSide, Measurement, measured, not_determinable
+from gaitlab.gait.measurement import TWO_SIDED_95, MeasuredSide, Measurement, measured, not_determinable
 from gaitlab.gait.strides import FootGait
+from gaitlab.gait.timing import EventErrors
 from gaitlab.motion.course import Course
 from gaitlab.motion.frame import anchor_rest
 from gaitlab.recording.model import Floats, Side
@@ -26,18 +27,19 @@ STANDING_S = 0.5
 
 @dataclass(frozen=True)
 class TimedCourse:
-    """When the walk over the course began and ended, in seconds, with the uncertainty of the duration.
+    """When the walk over the course began and ended, in seconds, with the 95 % interval of the duration.
 
-    ``reached_m`` is how far the leading foot's farthest place of rest lies forward, ``place_sd_m`` how uncertain that is;
-    ``reserve`` says why the time wants attention, or is empty.
+    The leading foot advances by steps, so that an error of place costs no time or a whole step's: the interval is not
+    symmetrical. ``reached_m`` is how far the leading foot's farthest place of rest lies forward, ``reached_sd_m``
+    how uncertain that is; ``reserve`` says why the time wants attention, or is empty.
     """
 
     course_m: float
     start_s: float
     end_s: float
-    sd_s: float
+    interval_s: tuple[float, float]
     reached_m: float
-    place_sd_m: float
+    reached_sd_m: float
     reserve: str = ""
 
 
@@ -126,18 +128,24 @@ def _timed(ways: list[_Way], course_m: float) -> TimedCourse | None:
         return None
     start = min(way.start_s for way in ways)
     place_sd = float(np.mean([_place_sd(way.foot, course_m, end) for way in ways]))
-    before, beyond = reached(course_m - place_sd), reached(course_m + place_sd)
-    # the leading foot advances by steps: neither its speed at the crossing nor the mean speed alone turns place into time
-    by_place = 0.5 * (beyond - before) if before and beyond else place_sd * (end - start) / course_m
-    rate_hz = min(way.foot.motion.rate_hz for way in ways)
-    parts = [by_place, EventParams().sd_s(rate_hz), EventParams().event_bias_sd_s]
+    margin = TWO_SIDED_95 * place_sd
+    before, beyond = reached(course_m - margin), reached(course_m + margin)
+    by_pace = margin * (end - start) / course_m  # where the foot stopped before
+    errors = EventErrors.at(min(way.foot.motion.rate_hz for way in ways))
+    parts = [errors.off_sd_s, errors.common_sd_s]
     reserve = ""
     if len(ways) == 1:
         strides = ways[0].foot.events.initial_contact_s[ways[0].foot.straight]
         parts.append(0.25 * float(np.median(np.diff(strides))) if len(strides) > 1 else 0.5)
         reserve = "One foot alone does not tell which foot started and which one led at the end."
-    far = max(float(way.places_m.max(initial=0.0)) for way in ways)
-    return TimedCourse(course_m, start, end, float(np.linalg.norm(parts)), far, place_sd, reserve)
+    leading = max(ways, key=lambda way: float(way.places_m.max(initial=0.0)))
+    far = float(leading.places_m.max(initial=0.0))
+    far_sd = _place_sd(leading.foot, far, float(leading.time_s[-1]))
+    others = TWO_SIDED_95 * float(np.linalg.norm(parts))
+    early = math.hypot(end - before if before else by_pace, others)
+    late = math.hypot(beyond - end if beyond else by_pace, others)
+    interval = max(end - start - early, 0.0), end - start + late
+    return TimedCourse(course_m, start, end, interval, far, far_sd, reserve)
 
 
 def timed_walk(timed: TimedCourse | str) -> list[Measurement]:
@@ -148,13 +156,17 @@ def timed_walk(timed: TimedCourse | str) -> list[Measurement]:
     speed = timed.course_m / duration
     excess = timed.reached_m - timed.course_m
     percent = 100.0 / timed.course_m
-    check = measured(d.COURSE_CHECK, BOTH, excess * percent, timed.place_sd_m * percent, 1)
+    check = measured(d.COURSE_CHECK, BOTH, excess * percent, timed.reached_sd_m * percent, 1)
     if excess > END_SHARE * timed.course_m:
         reason = "The person seems to have gone on past the end of the course: no check of scale then."
         check = check.with_attention(reason)
+    low, high = timed.interval_s
+    sd = (high - low) / (2.0 * TWO_SIDED_95)
+    slow, fast = timed.course_m / high, timed.course_m / max(low, 0.1 * duration)
+    speed_sd = (fast - slow) / (2.0 * TWO_SIDED_95)
     times = [
-        measured(d.WALK_TIME, BOTH, duration, timed.sd_s, 1),
-        measured(d.WALK_SPEED, BOTH, speed, speed * timed.sd_s / duration, 1),
+        replace(measured(d.WALK_TIME, BOTH, duration, sd, 1), interval=(low, high)),
+        replace(measured(d.WALK_SPEED, BOTH, speed, speed_sd, 1), interval=(slow, fast)),
     ]
     return [*(one.with_attention(timed.reserve) if timed.reserve else one for one in times), check]
 

@@ -33,6 +33,9 @@ from gaitlab.recording.model import Bools, Floats, Side
 
 LONGEST_STRIDE_S = 4.0
 """A longer time between two contacts of a foot holds a stop (mobgap's gate for a stride: 3 s)."""
+REST_EDGE_SD_S = 0.045
+"""When a foot comes to rest or leaves it. In simulated walks a rest that is found begins 0.06 to 0.11 s after the foot is
+flat and ends 0.01 to 0.02 s after its heel has begun to rise."""
 OVERLAP_S = 0.05
 """A swing of the other foot may reach this far out of a stance and still be its swing: the error of two events."""
 
@@ -45,14 +48,14 @@ class EventErrors:
     ----------
     contact_sd_s, off_sd_s : float
         Own errors of initial contact and foot off at 100 Hz and more: in the 46 trials of ``mtw-10m-walk`` the scatter of
-        stride times that ours and the hand-checked ones do not have in common, shared out between the two (173 straight
-        parts; the labels' own: 1 to 4 ms).
+        stride times that ours and the hand-checked ones do not have in common, shared out between the two (175 straight
+        parts: 3.3 and 4.0 ms; the labels' own: 5 and 4 ms). In simulated walks 1 ms.
     common_sd_s : float
         Between recordings, per foot and kind; see ``EventParams.event_bias_sd_s``.
     """
 
-    contact_sd_s: float = 0.011
-    off_sd_s: float = 0.0025
+    contact_sd_s: float = 0.0035
+    off_sd_s: float = 0.004
     common_sd_s: float = EventParams().event_bias_sd_s
 
     @classmethod
@@ -120,7 +123,7 @@ def times_and_phases(feet: Mapping[Side, FootGait], steps: Steps) -> list[Measur
         measurements.extend([*sides, of_both(*sides)])
 
     strides = {side: p.stride_s for side, p in phases.items()}
-    by_side(d.STRIDE_TIME, strides, {side: _in_mean(p, errors) for side, p in phases.items()}, 0.0)
+    by_side(d.STRIDE_TIME, strides, {side: sd_in_mean(p.index, errors) for side, p in phases.items()}, 0.0)
     for definition, name in ((d.STANCE, "stance_s"), (d.SWING, "swing_s")):
         shares = {side: 100.0 * getattr(p, name) / p.stride_s for side, p in phases.items()}
         by_side(definition, shares, dict.fromkeys(phases, of_share), bias)
@@ -129,10 +132,9 @@ def times_and_phases(feet: Mapping[Side, FootGait], steps: Steps) -> list[Measur
     return measurements
 
 
-def _in_mean(phases: Phases, errors: EventErrors) -> float:
-    """Uncertainty of a stride time that, were it independent of the others', would make that of their mean."""
-    n = max(len(phases.index), 1)
-    return errors.contact_sd_s * math.sqrt(2.0 * runs_of(phases.index) / n)
+def sd_in_mean(index: Indices, errors: EventErrors) -> float:
+    """Uncertainty of these strides' times that, were they independent, would make that of their mean."""
+    return errors.contact_sd_s * math.sqrt(2.0 * runs_of(index) / max(len(index), 1))
 
 
 def double_supports(own: Phases, other: FootGait) -> tuple[Floats, Bools]:
@@ -217,5 +219,5 @@ def stop_duration(feet: Mapping[Side, FootGait], course: Course) -> Measurement:
     if not course.bouts:
         return not_determinable(d.STOP_DURATION, both, "Nobody walks in this recording.")
     total = sum(end - start for start, end in course.stops)
-    sd = EventParams().event_sd_s * np.sqrt(2.0 * max(len(course.stops), 1))
+    sd = REST_EDGE_SD_S * np.sqrt(2.0 * max(len(course.stops), 1))
     return measured(d.STOP_DURATION, both, float(total), float(sd), len(course.stops))

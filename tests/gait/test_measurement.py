@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -53,11 +54,28 @@ def test_both_sides_count_alike_and_a_missing_side_is_named() -> None:
     right = mean_of(d.STRIDE_LENGTH, Side.RIGHT, np.full(10, 1.2), 0.0, 0.04, "none")
     both = of_both(left, right)
     assert both.value == pytest.approx(1.1)
-    assert both.sd == pytest.approx(0.025)
+    assert both.sd == pytest.approx(0.035)
     assert both.n == 30
     missing = of_both(left, not_determinable(d.STRIDE_LENGTH, MeasuredSide.RIGHT, "No foot."))
     assert missing.status is Status.NOT_DETERMINABLE
     assert "right" in missing.reason
+
+
+def test_an_event_that_is_read_late_on_one_side_says_nothing_of_the_other() -> None:
+    left = mean_of(d.STANCE, Side.LEFT, np.full(20, 61.0), 0.0, 0.3, "none")
+    right = mean_of(d.STANCE, Side.RIGHT, np.full(20, 62.0), 0.0, 0.4, "none")
+    assert of_both(left, right).sd == pytest.approx(0.25)
+
+
+def test_independent_errors_of_the_sides_are_halved_in_squares() -> None:
+    left = mean_of(d.STRIDE_LENGTH, Side.LEFT, np.full(4, 1.0), 0.06, 0.0, "none")
+    right = mean_of(d.STRIDE_LENGTH, Side.RIGHT, np.full(4, 1.2), 0.08, 0.0, "none")
+    assert of_both(left, right).sd == pytest.approx(0.025)
+
+
+def test_an_interval_of_its_own_goes_before_the_symmetrical_one() -> None:
+    one = replace(measured(d.WALK_TIME, MeasuredSide.BOTH, 6.0, 0.1, 1), interval=(5.9, 6.4))
+    assert one.ci95 == (5.9, 6.4)
 
 
 def test_every_definition_is_whole_and_has_a_name_of_its_own() -> None:

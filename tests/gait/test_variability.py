@@ -140,13 +140,15 @@ def test_pooled_over_trials_stride_times_vary_as_the_hand_checked_ones_do(
         for side, key in ((Side.LEFT, "LeftFootEvents"), (Side.RIGHT, "RightFootEvents")):
             ours[side].append(gait.spreads["stride_time_cv"][side])
             times = []
-            off = (np.array(json.loads(path.read_text())[key])[:, 0] - recording.first_packet) / 100.0
+            contact = (np.array(json.loads(path.read_text())[key])[:, 1] - recording.first_packet) / 100.0
             for part in range(gait.feet[side].part.max() + 1):
                 chosen = np.flatnonzero(gait.feet[side].part == part)[2:-2]
                 for k in chosen:
-                    now, before = (gait.feet[side].events.foot_off_s[i] for i in (k, k - 1))
-                    times.append(off[np.abs(off - now).argmin()] - off[np.abs(off - before).argmin()])
-            theirs.append((np.array(times), 0.003 * math.sqrt(2.0)))
+                    now, before = (gait.feet[side].events.initial_contact_s[i] for i in (k, k - 1))
+                    times.append(
+                        contact[np.abs(contact - now).argmin()] - contact[np.abs(contact - before).argmin()]
+                    )
+            theirs.append((np.array(times), 0.005 * math.sqrt(2.0)))
     found = variability({"stride_time_cv": {side: pooled(spreads) for side, spreads in ours.items()}})
     both = next(one for one in found if one.definition is d.STRIDE_TIME_CV and one.side is MeasuredSide.BOTH)
     labelled = pooled_cv(theirs)
