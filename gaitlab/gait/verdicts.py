@@ -10,7 +10,6 @@ import numpy as np
 
 from gaitlab.motion.model import FootMotion, Indices
 from gaitlab.motion.path import PathParams
-from gaitlab.motion.rest import rest_evidence
 from gaitlab.recording.model import Bools, Floats
 
 
@@ -79,7 +78,7 @@ def judge_strides(
     lost = _share(~motion.received, leave, reach)
     saturated = _share(motion.saturated, leave, reach)
     gap_s = _longest_gap_s(motion, leave, reach, p.blind_gap_s)
-    drift = _drift(motion, p)
+    drift = _drift(motion, leave, reach, p)
     unsure = ~(length_sd_m < length_m / 1.96) & (length_m >= 0.1)
 
     def gone(k: int) -> str:
@@ -135,11 +134,12 @@ def _longest_gap_s(motion: FootMotion, leave: Indices, reach: Indices, least_s: 
     return longest
 
 
-def _drift(motion: FootMotion, p: StrideQualityParams) -> Floats:
-    """Acceleration error implied by the velocity at each stride's end, over the median of the foot's strides."""
-    evidence = rest_evidence(motion.acceleration_mps2, motion.rate_radps, motion.rests, motion.rate_hz)
-    implied = np.nan_to_num(evidence.implied_acc_error_mps2[1:])
-    if not len(implied):
-        return implied
+def _drift(motion: FootMotion, leave: Indices, reach: Indices, p: StrideQualityParams) -> Floats:
+    """Acceleration error implied by the velocity at each stride's end (see ``RestEvidence``), over the median of the
+    foot's strides."""
+    if not len(leave):
+        return np.zeros(0)
+    residual = np.linalg.norm(motion.rests.residual_mps[1:], axis=1)
+    implied = residual * motion.rate_hz / np.maximum(reach - leave, 1)
     ratio: Floats = implied / max(float(np.median(implied)), p.least_drift_mps2)
     return ratio

@@ -86,7 +86,7 @@ def _row(name: str, judged: list[Judged]) -> Row:
     spread = float(np.sqrt(np.mean([one.relative**2 for one in judged])))
     figures.append(Figure("error/uncertainty, RMS", spread, "", 2))
     key = name.replace(" ", "_")
-    return Row(key, name.replace("_", " "), tuple(figures), len(judged), "intervals", 8, tuple(goals))
+    return Row(key, name.replace("_", " "), tuple(figures), len(judged), "intervals", goals=tuple(goals))
 
 
 def _trials(seeds: int) -> Iterator[_Trial]:
