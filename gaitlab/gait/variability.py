@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import chdtri, ndtri
 
 from gaitlab.gait import definitions as d
 from gaitlab.gait.lengths import NO_FOOT, ONE_FOOT, independent_sd
@@ -141,6 +140,8 @@ def variance_interval(spread: Spread, level: float, params: VariabilityParams) -
     The two uncertainties are joined by the method of variance estimates recovery (Zou and Donner 2008, Stat Med
     27:1693): distances of the limits from the estimate are added in squares.
     """
+    from scipy.special import chdtri, ndtri  # heavy; most recordings have too few strides for it
+
     tail, nu = 0.5 * (1.0 - level), spread.freedom
     low, high = (nu * spread.variance / float(chdtri(nu, share)) for share in (tail, 1.0 - tail))
     relative = 2.0 * params.jitter_spread * float(ndtri(1.0 - tail))

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solveh_banded
 
 from gaitlab.motion.model import Indices
 from gaitlab.recording.model import Bools, Floats
@@ -127,6 +126,8 @@ class DriftCurve:
             for column in range(row, width):
                 band[width - 1 + row - column, column : column + end : d] += local[:, row, column]
         band[-1] += FARTHEST_M**-2
+        from scipy.linalg import solveh_banded  # heavy; only a knee needs it
+
         coefficients = solveh_banded(band, right, check_finite=False)
         every = columns.reshape(-1, c)
         gram: Floats = every.T @ every - right.T @ coefficients

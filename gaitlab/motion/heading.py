@@ -16,7 +16,6 @@ def heading_change(motion: Motion, rests: Rests) -> Floats:
     """
     stance = motion.attitude[rests.moment]
     turn = twist_about_vertical(multiply(stance[1:], conjugate(stance[:-1])))
-    swept = np.concatenate([[0.0], np.cumsum(motion.rate_radps[:, 2])]) / motion.rate_hz
-    swept = np.diff(swept[rests.moment])
+    swept = np.add.reduceat(motion.rate_radps[:, 2], rests.moment)[:-1] / motion.rate_hz
     change: Floats = turn + 2.0 * np.pi * np.round((swept - turn) / (2.0 * np.pi))
     return change

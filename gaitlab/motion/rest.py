@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from gaitlab.motion.extrema import prominent_peaks
 from gaitlab.motion.model import Indices, Rests
+from gaitlab.motion.moving import moving_maximum, moving_mean
 from gaitlab.motion.windows import refined
 from gaitlab.recording.model import Floats
 
@@ -55,7 +55,7 @@ class RestParams:
 
 
 def _moving_rms(values: Floats, width: int) -> Floats:
-    squares = uniform_filter1d(_squares(values), width, mode="nearest")
+    squares = moving_mean(_squares(values), width)
     return np.asarray(np.sqrt(np.maximum(squares, 0.0)))
 
 
@@ -79,7 +79,7 @@ def cycle_time(rate_radps: Floats, rate_hz: float, params: RestParams | None = N
     shortest = round(p.cycle_range_s[0] * hz)
     if longest <= shortest + 2:
         return None
-    activity = uniform_filter1d(size, max(1, round(hz)))
+    activity = moving_mean(size, max(1, round(hz)))
     active = activity > 0.3 * _quantile(activity, 0.95)
     signal = np.where(active, size - size[active].mean() if active.any() else 0.0, 0.0)
     n_fft = 1 << (len(signal) + longest - 1).bit_length()
@@ -103,7 +103,7 @@ def _quantile(values: Floats, share: float) -> float:
 
 def _typical_swing(level: Floats, distance: int) -> float:
     """Median of the peaks that are the highest within ``distance`` rows and not mere standing."""
-    highest = maximum_filter1d(level, 2 * distance + 1, mode="nearest")
+    highest = moving_maximum(level, 2 * distance + 1)
     peaks = (level == highest) & (level >= 0.3 * _quantile(level, 0.98))
     return _quantile(level[peaks], 0.5) if peaks.any() else float(level.max(initial=0.0))
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import uniform_filter1d
 
+from gaitlab.motion.moving import moving_mean
 from gaitlab.motion.quaternions import multiply, rotate
 from gaitlab.recording.model import Floats
 
@@ -67,7 +67,7 @@ def mean_force(force_mps2: Floats, rate_hz: float, window_s: float = LEVEL_WINDO
     width = min(len(force_mps2), max(3, round(window_s * rate_hz)))
     columns = np.ascontiguousarray(force_mps2.T)
     for _ in range(2):
-        columns = uniform_filter1d(columns, width, axis=1, mode="nearest")
+        columns = moving_mean(columns, width)
     return np.ascontiguousarray(columns.T)
 
 
