@@ -20,6 +20,8 @@ class StandingParams:
     ----------
     duration_s : float
         Least length; İkizoğlu et al. 2018, §3.2.
+    step_s : float
+        Windows begin so far apart.
     preferred_start_s : float
         Where the paper takes its second, from the start of the recording.
     max_rate_sd_radps, max_acc_sd_mps2 : float
@@ -36,6 +38,7 @@ class StandingParams:
     """
 
     duration_s: float = 1.0
+    step_s: float = 0.05
     preferred_start_s: float = 2.0
     max_rate_sd_radps: float = 0.06
     max_acc_sd_mps2: float = 0.2
@@ -45,13 +48,15 @@ class StandingParams:
     unknown_drift_radps: float = 0.005
 
 
-def _scatter(values: Floats, width: int) -> Floats:
-    """Norm over the axes of the standard deviation in each window of ``width`` rows, by the window's first row."""
-    columns = np.ascontiguousarray(values.T) - values.mean(axis=0)[:, None]
+def _scatter(values: Floats, block: int, blocks: int) -> Floats:
+    """Norm over the axes of the standard deviation in each window of ``blocks`` blocks of rows, by its first block."""
+    whole = len(values) // block * block
+    columns = np.ascontiguousarray(values[:whole].T) - values.mean(axis=0)[:, None]
     square = np.einsum("ij,ij->j", columns, columns)
-    running = np.zeros((4, len(values) + 1))
-    np.cumsum(np.concatenate([columns, square[None]]), axis=1, out=running[:, 1:])
-    sums = (running[:, width:] - running[:, :-width]) / width
+    running = np.zeros((4, whole // block + 1))
+    np.cumsum(columns.reshape(3, -1, block).sum(axis=2), axis=1, out=running[:3, 1:])
+    np.cumsum(square.reshape(-1, block).sum(axis=1), out=running[3, 1:])
+    sums = (running[:, blocks:] - running[:, :-blocks]) / (block * blocks)
     variance = sums[3] - np.einsum("ij,ij->j", sums[:3], sums[:3])
     return np.asarray(np.sqrt(np.maximum(variance, 0.0)))
 
@@ -70,15 +75,19 @@ def find_standing(
         False where even the quietest second is not standing.
     """
     p = params or StandingParams()
-    width = min(len(acc), max(2, round(p.duration_s * rate_hz)))
-    unrest = np.maximum(_scatter(gyr, width) / p.max_rate_sd_radps, _scatter(acc, width) / p.max_acc_sd_mps2)
+    block = max(1, round(p.step_s * rate_hz))
+    blocks = min(len(acc) // block, max(2, round(p.duration_s * rate_hz / block)))
+    if blocks < 1:
+        return 0, len(acc), False
+    gyr_sd, acc_sd = _scatter(gyr, block, blocks), _scatter(acc, block, blocks)
+    unrest = np.maximum(gyr_sd / p.max_rate_sd_radps, acc_sd / p.max_acc_sd_mps2)
     runs = _runs(unrest <= 1.0)
     if not len(runs):
         start = int(np.argmin(unrest))
-        return start, start + width, False
+        return start * block, (start + blocks) * block, False
     quiet = [_quiet_part(unrest, int(low), int(high), p) for low, high in runs]
     start, end = max(quiet, key=lambda run: run[1] - run[0])
-    return start, end - 1 + width, True
+    return start * block, (end - 1 + blocks) * block, True
 
 
 def _runs(marked: Bools) -> Indices:

@@ -72,29 +72,32 @@ def integrate(
     dt = 1.0 / rate_hz
     last, first = leaving(rests)[:-1], rests.start[1:]
     low, high = int(last[0]) + 1, int(first[-1]) + 1
-    columns = np.concatenate([force_mps2.T, rotation.reshape(9, -1)])
     rows = np.arange(low, high)
-    passage = np.minimum(np.searchsorted(first, rows), len(first) - 1)
+    passage = np.repeat(np.arange(len(first)), np.diff(first + 1, prepend=low))
     left_s = (first[passage] - rows + 0.5) * dt
     moment = rests.moment
     share = (rows - moment[passage]) / (moment[passage + 1] - moment[passage])
-    inner = columns[:, low:high]
-    once = np.concatenate([inner, inner[:3] * share, variance[None, low:high] * dt])
-    all_ = np.concatenate([once, once * left_s, (once[-1] * left_s**2)[None]])
-    sums = _sums(all_, last + 1 - low, first + 1 - low).T * dt
+    columns = np.empty((33, high - low))
+    columns[:3] = force_mps2[low:high].T
+    columns[3:12] = rotation.reshape(9, -1)[:, low:high]
+    np.multiply(columns[:3], share, out=columns[12:15])
+    np.multiply(variance[low:high], dt, out=columns[15])
+    np.multiply(columns[:16], left_s, out=columns[16:32])
+    np.multiply(columns[31], left_s, out=columns[32])
+    sums = _sums(columns, last + 1 - low, first + 1 - low).T * dt
     end = np.maximum(rests.end, rests.start + 1)
-    resting = (_sums(columns, rests.start, end) / (end - rests.start)).T
-    at_rest = resting[:, 3:].reshape(-1, 3, 3), resting[:, :3]
+    resting = [_sums(one, rests.start, end) for one in (force_mps2.T, rotation.reshape(9, -1))]
+    force, turn = ((total / (end - rests.start)).T for total in resting)
     apart_s, duration_s = np.diff(moment) * dt, np.asarray(first - last, dtype=np.float64) * dt
-    return _assemble(sums, apart_s, duration_s, gravity_mps2, at_rest)
+    return _assemble(sums, apart_s, duration_s, gravity_mps2, (turn.reshape(-1, 3, 3), force))
 
 
 def _sums(columns: Floats, start: Indices, end: Indices) -> Floats:
-    """Sums of each row of ``columns`` (m, n) over the spans ``[start, end)``; shape (m, k)."""
-    running = np.zeros((len(columns), columns.shape[1] + 1))
-    np.cumsum(columns, axis=1, out=running[:, 1:])
-    between: Floats = running[:, end] - running[:, start]
-    return between
+    """Sums of each row of ``columns`` (m, n) over the spans ``[start, end)``, in order and apart; shape (m, k)."""
+    borders = np.stack([start, end], axis=1).ravel()
+    if borders[-1] == columns.shape[1]:
+        borders = borders[:-1]
+    return np.asarray(np.add.reduceat(columns, borders, axis=1)[:, ::2])
 
 
 def _assemble(

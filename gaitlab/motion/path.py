@@ -198,12 +198,20 @@ def _through(
     """
     missing = np.diff(place_m, axis=0) - (position[reach[1:]] - position[last[:-1]])
     total = np.concatenate([np.zeros((1, 3)), np.cumsum(missing, axis=0)])
-    rows = np.arange(last[0], reach[-1] + 1)
-    passage = np.minimum(np.searchsorted(reach[1:], rows), len(missing) - 1)
-    length = (reach[1:] - last[:-1])[passage]
-    u = np.clip((rows - last[passage]) / length, 0.0, 1.0)[:, None]
-    position, velocity = position.copy(), velocity.copy()
-    position[rows] += total[passage] + missing[passage] * (u * u * (3.0 - 2.0 * u))
-    position[reach[-1] + 1 :] += total[-1]
-    velocity[rows] += missing[passage] * (6.0 * u * (1.0 - u)) * (rate_hz / length[:, None])
-    return position, velocity
+    knots = np.stack([last[:-1], reach[1:]], axis=1).ravel()
+    phases = np.stack([np.arange(len(missing)), np.arange(1, len(missing) + 1)], axis=1).ravel()
+    phase = np.interp(
+        np.arange(len(position)), knots, phases
+    )  # the passage's number, and how far it is along
+    passage = np.minimum(phase.astype(np.intp), len(missing) - 1)
+    u = phase - passage
+    bent, faster = np.empty_like(position), np.empty_like(velocity)
+    smooth, slope = (
+        u * u * (3.0 - 2.0 * u),
+        6.0 * u * (1.0 - u) * (rate_hz / (reach[1:] - last[:-1]))[passage],
+    )
+    for axis in range(3):
+        lacking = missing[passage, axis]
+        bent[:, axis] = position[:, axis] + total[passage, axis] + lacking * smooth
+        faster[:, axis] = velocity[:, axis] + lacking * slope
+    return bent, faster
