@@ -12,6 +12,7 @@ from gaitlab.errors import InputError
 from gaitlab.gait import course as walking
 from gaitlab.gait import lengths, timing, variability
 from gaitlab.gait import timed_walk as timed_course
+from gaitlab.gait.foot_angle import foot_angles
 from gaitlab.gait.knees import knee_gait, knee_parameters
 from gaitlab.gait.model import Gait
 from gaitlab.gait.strides import find_steps, foot_gait
@@ -138,6 +139,7 @@ def _measure(
         *lengths.stride_length(feet),
         *lengths.step_length(feet, steps, frame.stood_together),
         *lengths.step_width(feet, steps, frame.stood_together),
+        *foot_angles(feet),
         *timing.times_and_phases(feet, steps),
         timing.stop_duration(feet, course),
         *variability.variability(spreads),

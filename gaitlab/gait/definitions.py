@@ -122,6 +122,26 @@ STEP_WIDTH = _definition(
     "İkizoğlu et al. 2018, table 1; Rebula et al. 2013 (not directly observable)",
     signed=True,
 )
+FOOT_ANGLE = _definition(
+    "foot_progression_angle",
+    "Foot progression angle",
+    "deg",
+    "length",
+    1,
+    "Angle between the foot and the line of walking while it rests, toes outwards positive; mean of the straight strides."
+    " What a sensor knows of its foot's direction is the axis about which the foot rolls, and no more.",
+    "Egerton et al. 2014; axis of rolling: gaitlab",
+    signed=True,
+)
+FOOT_ANGLE_SD = _definition(
+    "foot_progression_sd",
+    "Scatter of the foot's direction",
+    "deg",
+    "length",
+    1,
+    "Standard deviation, from stride to stride, of the angle between the foot while it rests and the line of walking, on"
+    " straight parts. It needs no knowledge of how the sensor sits on the foot.",
+)
 CADENCE = _definition(
     "cadence",
     "Cadence",

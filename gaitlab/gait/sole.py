@@ -74,12 +74,12 @@ class FootSwings:
         p = params or SoleParams()
         rests = foot.rests
         world = matrices(foot.attitude)
-        rate, velocity = _in_sensor(world, foot.rate_radps), _in_sensor(world, foot.velocity_mps)
+        rate, velocity = in_sensor(world, foot.rate_radps), in_sensor(world, foot.velocity_mps)
         speed = _size(velocity)
         whole = Windows(rests.moment[:-1], np.maximum(rests.moment[1:] + 1, rests.moment[:-1] + 2))
         peak = whole.highest(speed)
         before, after = Windows(whole.start, peak + 1), Windows(peak, whole.end)
-        pitch = _lateral_axis(rate, world, foot.velocity_mps) @ rate
+        pitch = lateral_axis(rate, world, foot.velocity_mps) @ rate
         push, slap = before.highest(pitch), after.highest(pitch)
 
         def point_speed(first: Indices, last: Indices, of: Indices) -> Floats:
@@ -99,7 +99,7 @@ def middle_of(values: Floats) -> float:
     return float(np.sort(values)[len(values) // 2])
 
 
-def _in_sensor(world: Floats, vectors: Floats) -> Floats:
+def in_sensor(world: Floats, vectors: Floats) -> Floats:
     """Vectors (n, 3) of the world in the sensor's frame, components first, shape (3, n)."""
     x, y, z = np.ascontiguousarray(vectors.T)
     turned: Floats = world[0] * x + world[1] * y + world[2] * z
@@ -110,7 +110,7 @@ def _size(vectors: Floats) -> Floats:
     return np.asarray(np.sqrt(vectors[0] ** 2 + vectors[1] ** 2 + vectors[2] ** 2))
 
 
-def _lateral_axis(rate: Floats, world: Floats, velocity_mps: Floats) -> Floats:
+def lateral_axis(rate: Floats, world: Floats, velocity_mps: Floats) -> Floats:
     """Unit vector to the left of the foot in the sensor's frame: the axis of most of its turning, with the way it
     walks ahead."""
     axis: Floats = np.linalg.eigh(rate @ rate.T)[1][:, -1]
