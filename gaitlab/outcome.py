@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from gaitlab.gait.strides import FootGait
 from gaitlab.gait.timed_walk import START_RULE, TimedCourse
 from gaitlab.motion.rest import rest_evidence
 from gaitlab.quality import trial_quality
-from gaitlab.recording.model import Recording
+from gaitlab.recording.model import Floats, Recording
 from gaitlab.settings import Settings
 
 
@@ -74,55 +75,71 @@ def _r(value: float | np.floating[Any]) -> float:
     return round(float(value), 5)
 
 
-def _known(value: float | np.floating[Any]) -> float | None:
-    return _r(value) if np.isfinite(value) else None
+def _column(values: Floats) -> list[float]:
+    """Rounded as ``_r``, all at once: numbers one by one are most of the cost of a result."""
+    rounded: list[float] = np.round(values, 5).tolist()
+    return rounded
+
+
+def _known(values: Floats) -> list[float | None]:
+    """Rounded, None where not finite."""
+    return [value if math.isfinite(value) else None for value in _column(values)]
 
 
 def _foot(foot: FootGait) -> result.Foot:
     rests, times = foot.motion.rests, foot.motion.time_s
-    period = 1.0 / foot.motion.rate_hz
     motion = foot.motion
     shown = rest_evidence(motion.acceleration_mps2, motion.rate_radps, rests, motion.rate_hz)
-    verdicts = [foot.verdicts.of(k) for k in range(len(foot))]
     distance, distance_sd = distance_of(foot)
-    walking = foot.walking
+    walking = np.flatnonzero(foot.walking)
+    duration = (foot.end_s - foot.start_s)[walking]
     return result.Foot(
         rests=tuple(
             result.Rest(
-                start_s=_r(times[a]),
-                end_s=_r(times[b - 1] + period),
-                residual_velocity_mps=_r(speed),
-                gyr_sd_radps=_known(gyr),
-                acc_sd_mps2=_known(acc),
-                implied_acc_error_mps2=_known(implied),
+                start_s=start,
+                end_s=end,
+                residual_velocity_mps=speed,
+                gyr_sd_radps=gyr,
+                acc_sd_mps2=acc,
+                implied_acc_error_mps2=implied,
             )
-            for a, b, speed, gyr, acc, implied in zip(
-                rests.start,
-                rests.end,
-                shown.residual_mps,
-                shown.gyr_sd_radps,
-                shown.acc_sd_mps2,
-                shown.implied_acc_error_mps2,
+            for start, end, speed, gyr, acc, implied in zip(
+                _column(times[rests.start]),
+                _column(times[rests.end - 1] + 1.0 / motion.rate_hz),
+                _column(shown.residual_mps),
+                _known(shown.gyr_sd_radps),
+                _known(shown.acc_sd_mps2),
+                _known(shown.implied_acc_error_mps2),
                 strict=True,
             )
         ),
         events=result.Events(
-            foot_off_s=tuple(_r(t) for t in foot.events.foot_off_s[walking]),
-            initial_contact_s=tuple(_r(t) for t in foot.events.initial_contact_s[walking]),
+            foot_off_s=tuple(_column(foot.events.foot_off_s[walking])),
+            initial_contact_s=tuple(_column(foot.events.initial_contact_s[walking])),
         ),
         strides=tuple(
             result.Stride(
-                start_s=_r(foot.start_s[k]),
-                end_s=_r(foot.end_s[k]),
-                length_m=_r(foot.length_m[k]),
-                length_sd_m=_r(foot.length_sd_m[k]),
-                duration_s=_r(foot.end_s[k] - foot.start_s[k]),
-                speed_mps=_r(foot.length_m[k] / (foot.end_s[k] - foot.start_s[k])),
-                turning=bool(foot.turning[k]),
-                quality=verdicts[k][0].value,
-                reason=verdicts[k][1],
+                start_s=start,
+                end_s=end,
+                length_m=length,
+                length_sd_m=sd,
+                duration_s=lasted,
+                speed_mps=speed,
+                turning=turning,
+                quality=quality.value,
+                reason=reason,
             )
-            for k in np.flatnonzero(walking)
+            for start, end, length, sd, lasted, speed, turning, (quality, reason) in zip(
+                _column(foot.start_s[walking]),
+                _column(foot.end_s[walking]),
+                _column(foot.length_m[walking]),
+                _column(foot.length_sd_m[walking]),
+                _column(duration),
+                _column(foot.length_m[walking] / duration),
+                foot.turning[walking].tolist(),
+                (foot.verdicts.of(k) for k in walking.tolist()),
+                strict=True,
+            )
         ),
         distance_m=_r(distance),
         distance_sd_m=_r(distance_sd),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -167,27 +166,29 @@ def find_steps(feet: Mapping[Side, FootGait]) -> Steps:
 
     A step is counted where the other foot's initial contact was the one just before, in the same straight part.
     """
-    contacts = [
-        (float(foot.events.initial_contact_s[k]), side, int(k))
-        for side, foot in feet.items()
-        for k in np.flatnonzero(foot.walking)
-    ]
-    contacts.sort(key=lambda one: one[0])
-    places = {side: foot.motion.rest_position_m for side, foot in feet.items()}
-    rows = []
-    for (t_before, other, j), (t, side, k) in itertools.pairwise(contacts):
-        own, others = feet[side], feet[other]
-        if side is other or own.part[k] < 0 or own.part[k] != others.part[j]:
-            continue
-        here, there = places[side], places[other]
-        line = (here[k + 1] - here[k])[:2]
-        line = line / max(float(np.linalg.norm(line)), 1e-9)
-        step = (here[k + 1] - there[j + 1])[:2]
-        across = float(step @ np.array([-line[1], line[0]])) * (1.0 if side is Side.LEFT else -1.0)
-        steady = bool(own.steady[k]) and not (own.doubtful[k] or others.doubtful[j])
-        rows.append((side is Side.LEFT, t - t_before, float(step @ line), across, int(own.part[k]), steady))
-    if not rows:
-        none, no = np.zeros(0), np.zeros(0, dtype=np.bool_)
-        return Steps(no, none, none, none, np.zeros(0, dtype=np.intp), no)
-    left, time, length, width, part, steady_ = (np.array(column) for column in zip(*rows, strict=True))
-    return Steps(left, time, length, width, part, steady_)
+    rows = np.concatenate([_contacts(side, foot) for side, foot in feet.items()])
+    rows = rows[np.argsort(rows[:, 0], kind="stable")]
+    contact, left, part, steady, doubtful = rows[:, :5].T
+    other = left[1:] != left[:-1]
+    k = 1 + np.flatnonzero(other & (part[1:] >= 0) & (part[1:] == part[:-1]))
+    line, step = rows[k, 7:9] - rows[k, 5:7], rows[k, 7:9] - rows[k - 1, 7:9]
+    line /= np.maximum(np.linalg.norm(line, axis=1), 1e-9)[:, None]
+    across = step[:, 1] * line[:, 0] - step[:, 0] * line[:, 1]
+    return Steps(
+        left[k] > 0,
+        contact[k] - contact[k - 1],
+        np.einsum("ij,ij->i", step, line),
+        np.where(left[k] > 0, across, -across),
+        part[k].astype(np.intp),
+        (steady[k] > 0) & (doubtful[k] + doubtful[k - 1] == 0),
+    )
+
+
+def _contacts(side: Side, foot: FootGait) -> Floats:
+    """A row for each stride of the walk, shape (m, 9): its contact, whether it is a left one, straight part, steady,
+    doubtful, and the places (x, y) of rest before and after it."""
+    k = np.flatnonzero(foot.walking)
+    place = foot.motion.rest_position_m[:, :2]
+    left = np.full(len(k), side is Side.LEFT)
+    flags = (left, foot.part[k], foot.steady[k], foot.doubtful[k])
+    return np.column_stack([foot.events.initial_contact_s[k], *flags, place[k], place[k + 1]])
