@@ -68,6 +68,10 @@ def _check(recording: Recording, settings: Settings) -> None:
         raise InputError(
             "course_length", "The course must be between 1 m and 1000 m long.", "Give its length in metres."
         )
+    if settings.way_m is not None and not 0.5 <= settings.way_m <= 10000.0:
+        raise InputError(
+            "known_way", "The known way must be between 0.5 m and 10 km long.", "Give its length in metres."
+        )
     if not any(placement.is_foot for placement in recording.sensors):
         raise InputError(
             "no_foot",
@@ -148,7 +152,7 @@ def _measure(
         *walking.start_to_end(feet),
         *knee_parameters(knees),
     )
-    findings = quality.merged(recording.findings, quality.findings(recording, settings.method, feet, knees))
+    findings = quality.merged(recording.findings, quality.findings(recording, settings, feet, knees))
     marked = quality.with_reserve(parameters, findings)
     return Gait(feet, knees, course, timed, marked, findings, spreads)
 

@@ -16,7 +16,7 @@ from gaitlab.gait.strides import FootGait
 from gaitlab.gait.timed_walk import START_RULE, TimedCourse
 from gaitlab.motion.rest import rest_evidence
 from gaitlab.quality import trial_quality
-from gaitlab.recording.model import Floats, Recording
+from gaitlab.recording.model import Floats, Placement, Recording
 from gaitlab.settings import Settings
 
 
@@ -43,6 +43,7 @@ def result_of(recording: Recording, settings: Settings, gait: Gait) -> result.Re
                 lost=sensor.n_lost,
                 saturated=sensor.n_saturated,
                 device=sensor.device,
+                heading=_heading(gait, placement),
             )
             for placement, sensor in recording.sensors.items()
         },
@@ -167,7 +168,25 @@ def _knee(knee: KneeGait) -> result.Knee:
             lateral_range_m=_r(np.mean(knee.sway_range_m)) if n else None,
             n=n,
         ),
+        place=None if motion.link is None else motion.link.place.value,
+        unexplained_share=None if motion.link is None else _r(motion.link.unexplained),
     )
+
+
+def _heading(gait: Gait, placement: Placement) -> str | None:
+    """What a foot's heading rests on, for people."""
+    if not placement.is_foot or placement.side not in gait.feet:
+        return None
+    field = gait.feet[placement.side].motion.field
+    if field is None:
+        return "gyroscope"
+    seen = (
+        f"at the rests its direction scatters by {np.degrees(field.scatter_rad):.0f}° and its strength by"
+        f" {100.0 * field.strength_spread:.0f} %"
+    )
+    if field.used:
+        return f"gyroscope, its drift corrected by the magnetometer, which agrees: {seen}"
+    return f"gyroscope; the magnetometer was left out: {seen}"
 
 
 def _walk(gait: Gait) -> result.Walk:

@@ -43,12 +43,13 @@ class Clock(_Part):
 
 
 class SensorQuality(_Part):
-    """How complete a sensor's recording is."""
+    """How complete a sensor's recording is, and what its heading rests on."""
 
     samples: int
     lost: int
     saturated: int
     device: str | None
+    heading: str | None = None
 
 
 Quality = Literal["valid", "attention", "invalid"]
@@ -116,10 +117,13 @@ class KneeSway(_Part):
 
 
 class Knee(_Part):
-    """A knee: gait cycles and sway in stance."""
+    """A knee: gait cycles and sway in stance; where on the leg its sensor is, as its movement shows, and the share of the
+    foot's movement that the leg between them does not explain."""
 
     strides: tuple[KneeStride, ...]
     sway: KneeSway
+    place: Literal["shank", "thigh", "unknown"] | None = None
+    unexplained_share: float | None = None
 
 
 class Interval(_Part):

@@ -231,3 +231,38 @@ def test_every_trial_of_ten_metres_and_back_is_a_walk_with_a_turn(data_dir: Path
         assert analysis.result.parameter("walk_time") is not None
     assert len(ways) == 92
     assert np.median([way.out_and_back_m for way in ways if way]) == pytest.approx(20.0, abs=1.0)
+
+
+def test_a_knee_of_the_other_leg_is_told_and_its_numbers_want_attention(data_dir: Path) -> None:
+    sensors = _leg(data_dir).sensors
+    other = replace(sensors[Placement.RIGHT_KNEE], placement=Placement.LEFT_KNEE)
+    feet = {placement: sensors[placement] for placement in (Placement.LEFT_FOOT, Placement.RIGHT_FOOT)}
+    result = analyze(Recording({**feet, Placement.LEFT_KNEE: other})).result
+    assert ("knee_of_other_leg", "left_knee") in [(one.code, one.placement) for one in result.warnings]
+    assert result.knees["left"].place == "unknown"
+    sway = result.parameter("knee_sway", "left")
+    assert sway is not None
+    assert sway.status in ("attention", "not_determinable")
+    right = analyze(_leg(data_dir)).result
+    assert [right.knees[side].place for side in ("left", "right")] == ["shank", "shank"]
+
+
+def test_what_was_told_of_the_course_is_said_and_no_longer_a_check() -> None:
+    recording = without(out_and_back().recording, Placement.LEFT_KNEE, Placement.RIGHT_KNEE)
+    result = analyze(recording, Settings(closed=True, way_m=10.0)).result
+    told = next(one.message for one in result.warnings if one.code == "course_used")
+    assert "ended where it began" in told
+    assert "10 m" in told
+    closing = result.parameter("closing_distance", "left")
+    assert closing is not None
+    assert closing.status == "attention"
+    assert result.provenance.settings["closed"] is True
+    assert _refusal(recording, Settings(way_m=0.1)).code == "known_way"
+
+
+def test_every_foot_says_what_its_heading_rests_on(data_dir: Path) -> None:
+    sensors = analyze(_leg(data_dir)).result.sensors
+    for foot in ("left_foot", "right_foot"):
+        assert sensors[foot].heading is not None
+        assert "magnetometer was left out" in str(sensors[foot].heading)
+    assert sensors["left_knee"].heading is None

@@ -15,7 +15,6 @@ from gaitlab.gait.measurement import Definition, MeasuredSide, Measurement, Stat
 from gaitlab.gait.strides import FootGait
 from gaitlab.gait.timing import LONGEST_STRIDE_S, REST_EDGE_SD_S, EventErrors, sd_in_mean
 from gaitlab.motion.course import Course
-from gaitlab.motion.frame import FrameParams
 from gaitlab.recording.model import Bools, Side
 
 BOTH = MeasuredSide.BOTH
@@ -118,8 +117,7 @@ def start_to_end(feet: Mapping[Side, FootGait]) -> list[Measurement]:
             continue
         foot = feet[side]
         gap = float(np.linalg.norm((foot.motion.rest_position_m[-1] - foot.motion.rest_position_m[0])[:2]))
-        turned = FrameParams().heading_sd_rad * float(foot.length_m.sum())
-        random = float(np.sqrt(np.sum(independent_sd(foot) ** 2)))
-        sd = float(np.linalg.norm([random, turned, foot.common_sd * gap]))
+        spread = foot.motion.place_covariance_m2[-1][:2, :2]
+        sd = float(np.sqrt(np.trace(spread) / 2.0 + (foot.common_sd * gap) ** 2))
         sides.append(measured(d.CLOSING_ERROR, MeasuredSide(side), gap, sd, len(foot)))
     return sides

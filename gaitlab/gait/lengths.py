@@ -70,7 +70,8 @@ def traversed_distance(feet: Mapping[Side, FootGait]) -> list[Measurement]:
         if n == 0:
             sides.append(not_determinable(d.DISTANCE, MeasuredSide(side), "The foot made no stride."))
         else:
-            sides.append(measured(d.DISTANCE, MeasuredSide(side), total, sd, n))
+            one = measured(d.DISTANCE, MeasuredSide(side), total, sd, n)
+            sides.append(replace(one, common_sd=feet[side].common_sd * total))
     return [*sides, of_both(*sides, a_mean=False)]
 
 

@@ -12,11 +12,12 @@ from gaitlab.errors import InputError
 from gaitlab.gait.knees import KneeGait
 from gaitlab.gait.measurement import Measurement
 from gaitlab.gait.strides import FootGait
-from gaitlab.motion.model import FootMotion, KneeMotion, Motion
+from gaitlab.motion.model import FootMotion, KneeMotion, LegPlace, Motion
 from gaitlab.motion.offset import STANDARD_GRAVITY_MPS2
 from gaitlab.motion.rest import find_rests, restlessness
 from gaitlab.quality.trial import invalid_strides
 from gaitlab.recording.model import Finding, Placement, Recording, Side
+from gaitlab.settings import Settings
 
 
 @dataclass(frozen=True)
@@ -88,6 +89,8 @@ RESERVES: dict[str, tuple[tuple[str, ...], str]] = {
     "restless_foot": ((*_PATHS, *_TIMES), "The foot hardly comes to rest."),
     "large_residual": (_PATHS, "The path drifted much between rests."),
     "most_strides_invalid": ((*_PATHS, *_TIMES), "Most strides are invalid."),
+    "knee_of_other_leg": (("knee_sway", "knee_residual"), "The sensor moves as no knee of this leg does."),
+    "course_used": (("closing_distance", "course_check", "traversed_distance"), "It was used for the path."),
     "rate_assumed": (_ALL, "The sampling rate is assumed."),
     "rate_contradiction": (_ALL, "The sampling rate is in doubt."),
 }
@@ -136,15 +139,18 @@ def merged(read: Sequence[Finding], analysed: Sequence[Finding]) -> tuple[Findin
 
 
 def findings(
-    recording: Recording, method: str, feet: Mapping[Side, FootGait], knees: Mapping[Side, KneeGait]
+    recording: Recording, settings: Settings, feet: Mapping[Side, FootGait], knees: Mapping[Side, KneeGait]
 ) -> list[Finding]:
     """What to know about the data, in words; placements in their usual order."""
     found = _of_recording(recording, feet)
-    if method == "gaitlab":  # a method that misses rests takes several strides for one swing
+    ours = settings.method == "gaitlab"
+    if settings.anchor is not None:
+        found.append(Finding("course_used", _course_used(settings)))
+    if ours:  # a method that misses rests takes several strides for one swing
         found += check_alternation(feet)
     for side, foot in feet.items():
         found += _of_foot(Placement.foot(side), foot)
-        if method != "gaitlab":
+        if not ours:
             found += _of_rests(Placement.foot(side), foot)
     found += invalid_strides(feet)
     for side, knee in knees.items():
@@ -152,7 +158,23 @@ def findings(
         if not len(knee.motion.residual_m) and feet[side].walking.any():
             message = f"The {side} knee was not recorded while its foot walked: it cannot be corrected."
             found.append(Finding("knee_without_cycle", message, Placement.knee(side)))
+        if knee.motion.link is not None and knee.motion.link.place is LegPlace.UNKNOWN:
+            message = (
+                f"The sensor given as the {side} knee moves like neither shank nor thigh over the {side} foot: it may be on"
+                " the other leg, on the trunk, or loose."
+            )
+            found.append(Finding("knee_of_other_leg", message, Placement.knee(side)))
     return found
+
+
+def _course_used(settings: Settings) -> str:
+    """What was told of the course and went into the path."""
+    told = ["each foot ended where it began"] if settings.closed else []
+    if settings.way_m is not None:
+        told.append(f"the farthest place lies {settings.way_m:g} m from the start")
+    return (
+        f"As asked, the path uses that {' and that '.join(told)}: against these it can no longer be checked."
+    )
 
 
 def _of_recording(recording: Recording, feet: Mapping[Side, FootGait]) -> list[Finding]:
@@ -202,7 +224,7 @@ def _of_sensor(placement: Placement, motion: Motion) -> list[Finding]:
         found.append(Finding("no_standing", message, placement))
     elif not offsets.as_in_paper:
         at = motion.time_s[offsets.start]
-        message = f"The {placement.label} does not stand from 2 s to 3 s; its offsets come from the second at {at:.1f} s."
+        message = f"The {placement.label} does not stand from 2 s to 3 s; its offsets come from its standing at {at:.1f} s."
         found.append(Finding("standing_elsewhere", message, placement))
     error = offsets.gravity_mps2 / STANDARD_GRAVITY_MPS2 - 1.0
     if offsets.standing and abs(error) > PARAMS.gravity_share:

@@ -16,6 +16,7 @@ SEVERITY: dict[str, Quality] = {
     **dict.fromkeys(
         (
             "column_not_used",
+            "course_used",
             "knee_without_foot",
             "lost_samples",
             "rate_overridden",

@@ -136,6 +136,11 @@ def _section(trial: TrialReport, n_trials: int, digest: str) -> TrialSection:
         overview_figures=tuple(figure for figure in drawn if figure.wide),
         figure_pairs=_pairs([figure for figure in drawn if not figure.wide]),
         sensors=_sensor_rows(result),
+        headings=tuple(
+            f"Heading of the {placement.replace('_', ' ')}: {sensor.heading}."
+            for placement, sensor in result.sensors.items()
+            if sensor.heading
+        ),
         strides=stride_rows(result),
         warnings=tuple(_warnings(result)),
         provenance=_provenance(result, digest),

@@ -166,6 +166,7 @@ class TrialSection:
     overview_figures: tuple[Figure, ...]
     figure_pairs: tuple[tuple[Figure, ...], ...]
     sensors: tuple[SensorRow, ...]
+    headings: tuple[str, ...]
     strides: tuple[StrideRow, ...]
     warnings: tuple[str, ...]
     provenance: tuple[Fact, ...]

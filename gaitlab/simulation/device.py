@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -79,7 +80,7 @@ def _further_channels(
     errors: SensorErrors,
     channels: Channels,
     rng: np.random.Generator,
-) -> dict[str, Floats]:
+) -> dict[str, Any]:
     """The sensor's fields beside accelerometer and gyroscope; each channel has its own stream of errors."""
     for_attitude, for_mag, for_pressure = rng.spawn(3)
     position_m, true_attitude = ends.position_m[1:], ends.rotation[1:] * mounting
