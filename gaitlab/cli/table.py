@@ -39,7 +39,8 @@ def _cell(parameter: Parameter | None) -> str:
         return "—"
     mark = "*" if parameter.status == "attention" else ""
     digits = parameter.decimals
-    return f"{parameter.value:.{digits}f} ± {parameter.sd or 0.0:.{digits}f}{mark}"
+    shown = max(parameter.sd or 0.0, 10.0**-digits)  # never as zero
+    return f"{parameter.value:.{digits}f} ± {shown:.{digits}f}{mark}"
 
 
 def _print_reasons(result: Result) -> None:

@@ -78,7 +78,7 @@ def traversed_distance(feet: Mapping[Side, FootGait]) -> list[Measurement]:
 def step_length(feet: Mapping[Side, FootGait], steps: Steps, stood_together: bool) -> list[Measurement]:
     """Left, right and both, from the steady steps of the first straight part.
 
-    A foot that stood 3 cm before the other makes one side's steps longer and the other's shorter by that much; the
+    A foot that stood a little before the other makes one side's steps longer and the other's shorter by that much; the
     mean of both sides does not know of it.
     """
     missing = [side for side in Side if side not in feet]
@@ -100,12 +100,14 @@ def step_length(feet: Mapping[Side, FootGait], steps: Steps, stood_together: boo
     )
     both = of_both(left, right)
     sides = [
-        one.with_attention("It assumes that the feet stood side by side (± 3 cm) before the walk.")
+        one.with_attention(
+            f"It assumes that the feet stood side by side (± {100 * params.standing_stagger_sd_m:.0f} cm) before the walk."
+        )
         for one in (left, right)
     ]
     if both.value is None:
         return [*sides, both]
-    shared = float(np.hypot(feet[Side.LEFT].common_sd, feet[Side.RIGHT].common_sd)) / 2.0 * both.value
+    shared = 0.5 * (feet[Side.LEFT].common_sd + feet[Side.RIGHT].common_sd) * both.value
     random = float(np.mean([_mean_independent(feet[side]) for side in Side])) / 2.0
     return [*sides, replace(both, sd=float(np.hypot(shared, random)))]
 
