@@ -271,9 +271,13 @@ def _command(result: Result) -> str:
     words = ["gaitlab", "analyze"]
     for given in result.provenance.inputs:
         words += [f"--{given.placement.replace('_', '-')}", given.name]
-    course = result.provenance.settings.get("course_m")
-    if course is not None:
-        words += ["--course", f"{course:g}" if isinstance(course, float) else str(course)]
+    chosen = result.provenance.settings
+    for option, name in (("--course", "course_m"), ("--known-way", "way_m")):
+        length = chosen.get(name)
+        if length is not None:
+            words += [option, f"{length:g}" if isinstance(length, float) else str(length)]
+    if chosen.get("closed"):
+        words.append("--closed")
     words += ["--method", result.provenance.method, "--out", "result.json"]
     return shlex.join(words)
 
