@@ -28,6 +28,7 @@ def build_parser() -> argparse.ArgumentParser:
     _analyze(commands)
     _doctor(commands)
     _validate(commands)
+    _methods(commands)
     _demo(commands)
     _serve(commands)
     _user(commands)
@@ -134,6 +135,20 @@ def _validate(commands: Commands) -> None:
     )
     command.add_argument("--trials", action="store_true", help="also each trial, stride or gait cycle")
     command.set_defaults(run=_late("validate", "run"), wrong_usage=command.error)
+
+
+def _methods(commands: Commands) -> None:
+    command = commands.add_parser(
+        "methods",
+        help="list the published methods that can be called by name",
+        description="List the published methods that can be called by name: the question each answers, what it needs, and"
+        " where it comes from. With a name: its constants with units and sources, and each deviation from the paper.",
+    )
+    command.add_argument(
+        "name", nargs="?", metavar="NAME", help="show everything about the methods of this name"
+    )
+    command.add_argument("--json", action="store_true", help="print JSON")
+    command.set_defaults(run=_late("methods", "run"))
 
 
 def _demo(commands: Commands) -> None:

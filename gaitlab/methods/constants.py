@@ -13,10 +13,10 @@ def constant(value: float, unit: str, source: str) -> Any:
     return field(default=value, metadata={"unit": unit, "source": source})
 
 
-def constants_of(*params: type[Any]) -> tuple[Constant, ...]:
-    """The constants that params dataclasses hold, for ``Method.constants``; fields without a unit are none."""
+def constants_of(*params: Any) -> tuple[Constant, ...]:
+    """The constants that params dataclasses, or instances of them, hold; fields without a unit are none."""
     return tuple(
-        Constant(one.name, one.default, one.metadata["unit"], one.metadata["source"])
+        Constant(one.name, getattr(kind, one.name), one.metadata["unit"], one.metadata["source"])
         for kind in params
         for one in fields(kind)
         if "unit" in one.metadata
