@@ -35,7 +35,7 @@ def mean_of(
     n = len(values)
     if n == 0:
         return not_determinable(definition, MeasuredSide(side), reason)
-    independent = np.broadcast_to(np.asarray(independent_sd, dtype=np.float64), (n,))
+    independent = np.zeros(n) + independent_sd
     sd = float(np.sqrt(np.sum(independent**2) / n**2 + common_sd**2))
     mean = measured(definition, MeasuredSide(side), float(values.mean()), sd, n)
     return with_count(replace(mean, common_sd=float(common_sd)))

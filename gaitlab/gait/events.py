@@ -76,11 +76,13 @@ class FootEvents:
     """Events of each swing, in seconds on the recording's clock, shape (k − 1,) for k rests.
 
     ``on_the_spot`` is true where the foot turned without leaving its place: the times are those of the turning.
+    ``lateral``: the foot's own lateral axis, see ``FootSwings``; zero where it made no swing.
     """
 
     foot_off_s: Floats
     initial_contact_s: Floats
     on_the_spot: Bools
+    lateral: Floats
 
 
 def find_events(foot: FootMotion, params: EventParams | None = None) -> FootEvents:
@@ -98,7 +100,7 @@ def find_events(foot: FootMotion, params: EventParams | None = None) -> FootEven
     """
     p = params or EventParams()
     if len(foot.rests) < 2:
-        return FootEvents(np.zeros(0), np.zeros(0), np.zeros(0, dtype=np.bool_))
+        return FootEvents(np.zeros(0), np.zeros(0), np.zeros(0, dtype=np.bool_), np.zeros(3))
     swings = FootSwings.of(foot)
     off = _foot_off(swings, foot.rate_hz, p)
     contact = np.maximum(_contact(swings, foot, p), off)
@@ -106,7 +108,10 @@ def find_events(foot: FootMotion, params: EventParams | None = None) -> FootEven
     typical = middle_of(top[top >= 0.3 * top.max()])
     start_s = float(foot.time_s[0])
     return FootEvents(
-        start_s + off / foot.rate_hz, start_s + contact / foot.rate_hz, top < p.spot_share * typical
+        start_s + off / foot.rate_hz,
+        start_s + contact / foot.rate_hz,
+        top < p.spot_share * typical,
+        swings.lateral,
     )
 
 

@@ -10,7 +10,6 @@ from gaitlab.gait import definitions as d
 from gaitlab.gait.averages import FEW_STRIDES
 from gaitlab.gait.lengths import NO_FOOT
 from gaitlab.gait.measurement import MeasuredSide, Measurement, measured, not_determinable
-from gaitlab.gait.sole import in_sensor, lateral_axis
 from gaitlab.gait.strides import FootGait
 from gaitlab.motion.quaternions import matrices
 from gaitlab.recording.model import Floats, Side
@@ -30,9 +29,8 @@ def toe_out_deg(foot: FootGait, side: Side) -> Floats:
     between = np.flatnonzero(foot.straight[:-1] & foot.straight[1:]) + 1
     if not len(between):
         return np.zeros(0)
-    world = matrices(motion.attitude)
-    axis = lateral_axis(in_sensor(world, motion.rate_radps), world, motion.velocity_mps)
-    x, y, _ = np.einsum("ijk,j->ik", world[:, :, motion.rests.moment[between]], axis)
+    world = matrices(motion.attitude[motion.rests.moment[between]])
+    x, y, _ = np.einsum("ijk,j->ik", world, foot.events.lateral)
     place = motion.rest_position_m
     line = place[between + 1] - place[between - 1]
     angle = np.arctan2(-x, y) - np.arctan2(line[:, 1], line[:, 0])

@@ -45,6 +45,8 @@ class FootSwings:
         Row in which the sensor is fastest.
     push, slap : ndarray (m,)
         Row of the fastest pitching forward before and after it: the heel's rise and the forefoot's fall.
+    lateral : ndarray (3,)
+        The foot's own lateral axis, to its left, in the sensor's frame.
     speed_mps, toe_mps, heel_mps : ndarray (n,)
         Speed of the sensor, of the point over which the foot rolls off, and of that over which it rolls on.
     pitch_radps : ndarray (n,)
@@ -58,6 +60,7 @@ class FootSwings:
     peak: Indices
     push: Indices
     slap: Indices
+    lateral: Floats
     speed_mps: Floats
     toe_mps: Floats
     heel_mps: Floats
@@ -74,12 +77,13 @@ class FootSwings:
         p = params or SoleParams()
         rests = foot.rests
         world = matrices(foot.attitude)
-        rate, velocity = in_sensor(world, foot.rate_radps), in_sensor(world, foot.velocity_mps)
+        rate, velocity = _in_sensor(world, foot.rate_radps), _in_sensor(world, foot.velocity_mps)
         speed = _size(velocity)
         whole = Windows(rests.moment[:-1], np.maximum(rests.moment[1:] + 1, rests.moment[:-1] + 2))
         peak = whole.highest(speed)
         before, after = Windows(whole.start, peak + 1), Windows(peak, whole.end)
-        pitch = lateral_axis(rate, world, foot.velocity_mps) @ rate
+        lateral = _lateral_axis(rate, world, foot.velocity_mps)
+        pitch = lateral @ rate
         push, slap = before.highest(pitch), after.highest(pitch)
 
         def point_speed(first: Indices, last: Indices, of: Indices) -> Floats:
@@ -91,7 +95,7 @@ class FootSwings:
         toe = point_speed(whole.start, push + 1, push)
         flat = np.minimum(slap + max(1, round(p.slap_s * foot.rate_hz)), whole.end)
         heel = point_speed(slap, flat, slap)
-        return cls(whole, before, after, peak, push, slap, speed, toe, heel, pitch)
+        return cls(whole, before, after, peak, push, slap, lateral, speed, toe, heel, pitch)
 
 
 def middle_of(values: Floats) -> float:
@@ -99,7 +103,7 @@ def middle_of(values: Floats) -> float:
     return float(np.sort(values)[len(values) // 2])
 
 
-def in_sensor(world: Floats, vectors: Floats) -> Floats:
+def _in_sensor(world: Floats, vectors: Floats) -> Floats:
     """Vectors (n, 3) of the world in the sensor's frame, components first, shape (3, n)."""
     x, y, z = np.ascontiguousarray(vectors.T)
     turned: Floats = world[0] * x + world[1] * y + world[2] * z
@@ -110,7 +114,7 @@ def _size(vectors: Floats) -> Floats:
     return np.asarray(np.sqrt(vectors[0] ** 2 + vectors[1] ** 2 + vectors[2] ** 2))
 
 
-def lateral_axis(rate: Floats, world: Floats, velocity_mps: Floats) -> Floats:
+def _lateral_axis(rate: Floats, world: Floats, velocity_mps: Floats) -> Floats:
     """Unit vector to the left of the foot in the sensor's frame: the axis of most of its turning, with the way it
     walks ahead."""
     axis: Floats = np.linalg.eigh(rate @ rate.T)[1][:, -1]
