@@ -5,14 +5,18 @@ Bousdar Ahmed and Metzger 2017, §II-B and §II-C, fig. 3, 5 and 7, eq. 3–4.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
+from gaitlab.methods.constants import constant, constants_of
 from gaitlab.methods.leg_model import LegAngles, joints_in_base
-from gaitlab.methods.model import Constant, Method, Need, Question
+from gaitlab.methods.model import Method, Need, Question
 from gaitlab.motion.model import Indices
 from gaitlab.recording.model import Bools, Floats
+
+_SOURCE = "Bousdar Ahmed and Metzger 2017, fig. 3"
 
 
 @dataclass(frozen=True)
@@ -22,10 +26,10 @@ class ComfortZone:
     Source: fig. 3 of the paper, adapted there from its reference [13].
     """
 
-    roll_min_rad: float = float(np.radians(-3.5))
-    roll_max_rad: float = float(np.radians(3.5))
-    pitch_min_rad: float = float(np.radians(-28.0))
-    pitch_max_rad: float = float(np.radians(18.0))
+    roll_min_rad: float = constant(math.radians(-3.5), "rad", _SOURCE)
+    roll_max_rad: float = constant(math.radians(3.5), "rad", _SOURCE)
+    pitch_min_rad: float = constant(math.radians(-28.0), "rad", _SOURCE)
+    pitch_max_rad: float = constant(math.radians(18.0), "rad", _SOURCE)
 
     @property
     def low_rad(self) -> Floats:
@@ -115,19 +119,13 @@ def _moved(hip: Floats, held: Floats, leg: LegAngles) -> Floats:
     return distance
 
 
-_SOURCE = "Bousdar Ahmed and Metzger 2017, fig. 3"
-ZONE_CONSTANTS = tuple(
-    Constant(name, float(np.degrees(getattr(ZONE, f"{name}_rad"))), "°", _SOURCE)
-    for name in ("roll_min", "roll_max", "pitch_min", "pitch_max")
-)
-
 METHOD = Method(
     name="bousdar2017_comfort_zone",
     question=Question.POSTURE,
     title="Comfort zone of the metatarsal in stance",
     reference="Bousdar Ahmed and Metzger 2017, §II-A to §II-C, table I, eq. 1–4, fig. 3, 5, 7",
     needs=(Need.THIGH, Need.ACCELEROMETER, Need.GYROSCOPE),
-    constants=ZONE_CONSTANTS,
+    constants=constants_of(ComfortZone),
     deviations=(
         (
             "Row 4 of table I is taken without its 180°: with it the leg is folded at zero and the foot points backward,"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from gaitlab.methods.leg_model import LegAngles, Links
-from gaitlab.methods.posture_bousdar2017 import METHOD, ZONE, corrections, extremes, judge
+from gaitlab.methods.posture_bousdar2017 import METHOD, corrections, extremes, judge
 
 LINKS = Links(0.45, 0.40, 0.2)
 
@@ -87,11 +87,7 @@ def test_no_stance_no_rows_and_no_orientation_are_no_error() -> None:
     assert np.isnan(unknown.outside_m[0])
 
 
-def test_the_constants_of_the_catalogue_are_those_that_are_used() -> None:
-    assert [(one.name, round(one.value, 9), one.unit) for one in METHOD.constants] == [
-        ("roll_min", -3.5, "°"),
-        ("roll_max", 3.5, "°"),
-        ("pitch_min", -28.0, "°"),
-        ("pitch_max", 18.0, "°"),
-    ]
-    assert np.degrees(ZONE.pitch_max_rad) == METHOD.constants[3].value
+def test_the_constants_of_the_catalogue_are_those_of_the_paper() -> None:
+    found = {one.name: (round(np.degrees(one.value), 9), one.unit) for one in METHOD.constants}
+    limits = {"roll_min_rad": -3.5, "roll_max_rad": 3.5, "pitch_min_rad": -28.0, "pitch_max_rad": 18.0}
+    assert found == {name: (limit, "rad") for name, limit in limits.items()}
