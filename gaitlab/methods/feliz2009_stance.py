@@ -46,7 +46,8 @@ def moving(foot: FootView, params: StanceParams | None = None) -> Bools:
     p = params or StanceParams()
     raw = size(foot.gyr_radps) > p.still_radps
     pitch_roll = foot.motion.rate_radps[:, :2]
-    bend = np.diff(pitch_roll, axis=0, prepend=pitch_roll[:1]) * foot.rate_hz
+    second = pitch_roll[min(1, len(pitch_roll) - 1)]  # the first sample bends as the second does
+    bend = np.diff(pitch_roll, axis=0, prepend=second[None]) * foot.rate_hz
     turning = np.hypot(bend[:, 0], bend[:, 1]) > p.most_radps2
     return majority(raw | turning, samples(p.half_window_s, foot.rate_hz))
 
@@ -103,7 +104,11 @@ def position(foot: FootView, params: StanceParams | None = None, *, letter: bool
 
 
 def height(foot: FootView, params: StanceParams | None = None) -> Floats:
-    """Height of each row over the first stance, metres, shape (n,): the vertical of the same (§III.B)."""
+    """Height of each row over the first stance, metres, shape (n,): the vertical of the same (§III.B).
+
+    Below 1 rad/s a foot still rolls, and the mean of its velocity there is not zero: on the flat it sinks or climbs by up to
+    4 cm a stride, 0.25 m at the end of 20 m (median of ``mtw-10m-walk``).
+    """
     return path(foot, rests(foot, params))[:, 2]
 
 

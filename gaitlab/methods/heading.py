@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from gaitlab.methods.model import Constant, FootView, Method, Need, Question
-from gaitlab.motion.heading import heading_change
 from gaitlab.motion.magnetometer import MagnetometerParams, judge_field
 from gaitlab.motion.model import FieldEvidence, FootMotion
 from gaitlab.motion.quaternions import conjugate, matrices, multiply, twist_about_vertical
@@ -38,7 +37,7 @@ def foot_heading(motion: FootMotion) -> Floats:
     """
     moment = motion.rests.moment
     knots = moment if len(moment) else np.zeros(1, dtype=np.intp)
-    at_rest = np.concatenate([[0.0], np.cumsum(heading_change(motion, motion.rests))])
+    at_rest = np.concatenate([[0.0], np.cumsum(motion.turn_rad)])
     since = np.maximum(np.searchsorted(knots, np.arange(motion.n_samples), side="right") - 1, 0)
     start = conjugate(motion.attitude[knots])[since]
     turn = twist_about_vertical(multiply(motion.attitude, start))

@@ -34,9 +34,7 @@ class FloorParams:
         A height within this share of a storey about the middle between two floors decides nothing: the floor stays.
     """
 
-    margin: float = constant(
-        0.15, "storey", "ours: 0.9 m of a storey of 3 m in all, 3.6 times the noise of a barometer of 3 Pa"
-    )
+    margin: float = constant(0.3, "storey", "ours: 0.9 m of 3 m, 3.6 times the noise of a barometer, 3 Pa")
 
 
 def barometric_height(pressure_pa: Floats, reference_pa: float, air: Atmosphere | None = None) -> Floats:
