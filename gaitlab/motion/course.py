@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gaitlab.motion.heading import heading_change
 from gaitlab.motion.model import FootMotion
 from gaitlab.recording.model import Bools, Floats, Side
 
@@ -95,7 +94,7 @@ class Swings:
     def of(cls, foot: FootMotion, params: CourseParams) -> Swings:
         """Swings of a foot with at least two rests."""
         last = np.maximum(foot.rests.end - 1, foot.rests.start)
-        change = heading_change(foot, foot.rests)
+        change = foot.turn_rad
         place = foot.rest_position_m[:, :2]
         turning = _turning(change, params)
         walking = turning | (np.linalg.norm(np.diff(place, axis=0), axis=1) >= params.min_stride_m)

@@ -59,6 +59,7 @@ def foot_motion(
         step_covariance_m2=step_covariance_m2,
         place_covariance_m2=place_covariance_m2,
         level=level,
+        turn_rad=turn,
     )
 
 

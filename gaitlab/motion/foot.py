@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from gaitlab.motion.offset import STANDARD_GRAVITY_MPS2
 from gaitlab.motion.orientation import OrientationSource
 from gaitlab.motion.path import Anchor, follow
 from gaitlab.motion.quaternions import multiply, rotate
-from gaitlab.motion.rest import find_rests
+from gaitlab.motion.rest import restlessness, rests_in, unrest
 from gaitlab.recording.model import Bools, Floats, Sensor
 
 
@@ -67,7 +67,8 @@ def track_foot(
         seen = oriented(calibrated, orientation(sensor, calibrated, source), rate_hz)
         up = np.array([[0.0, 0.0, 1.0]])
     gravity = up * (STANDARD_GRAVITY_MPS2 / np.linalg.norm(up, axis=1, keepdims=True))
-    found = find_rests(seen.force_mps2 - gravity, calibrated.gyr_radps, rate_hz)
+    moving = unrest(seen.force_mps2 - gravity, calibrated.gyr_radps, rate_hz)
+    found = rests_in(moving)
     tilt = np.zeros((len(found), 2))
     if by_gyroscope:
         attitude, tilt = _level(seen, up, found)
@@ -76,9 +77,10 @@ def track_foot(
     kept = _kept(free, found)
     rests = found if kept.all() else _joined(found, kept)
     if len(rests) < 2:
-        return _unmoved(free, rests)
-    foot = follow(sensor, calibrated, seen, free, rests, np.diff(tilt[kept], axis=0), anchor)
-    return with_field(foot, sensor.mag)
+        foot = _unmoved(free, rests)
+    else:
+        foot = follow(sensor, calibrated, seen, free, rests, np.diff(tilt[kept], axis=0), anchor)
+    return with_field(replace(foot, restlessness=restlessness(moving)), sensor.mag)
 
 
 def _best_source(sensor: Sensor, calibrated: Calibrated) -> OrientationSource:

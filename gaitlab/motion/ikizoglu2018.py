@@ -14,6 +14,7 @@ from gaitlab.motion.displacement import foot_motion
 from gaitlab.motion.integration import position_of, velocity_of
 from gaitlab.motion.model import FootMotion, Motion, Rests
 from gaitlab.motion.passages import leaving
+from gaitlab.motion.rest import restlessness, unrest
 from gaitlab.recording.model import Floats, Sensor
 
 
@@ -107,7 +108,9 @@ def track_foot(free: Motion) -> FootMotion:
     variance = 0.5 * (own + (own.mean() if k else 0.0)) * swing_s**2 / 3.0
     steps = variance[:, None, None] * np.eye(3)
     places = np.concatenate([np.zeros((min(len(rests), 1), 3, 3)), np.cumsum(steps, axis=0)])
-    return foot_motion(moved, free, rests, steps, places, np.zeros(k, dtype=np.bool_))
+    foot = foot_motion(moved, free, rests, steps, places, np.zeros(k, dtype=np.bool_))
+    found = unrest(free.acceleration_mps2, free.rate_radps, free.rate_hz)
+    return replace(foot, restlessness=restlessness(found))
 
 
 def correct_knee(

@@ -175,6 +175,10 @@ class FootMotion(Motion):
         Of its place at each rest against the first, drift of the heading included.
     level : ndarray of bool (k − 1,)
         The floor was taken to be level between the two rests.
+    turn_rad : ndarray (k − 1,)
+        Turn of the foot about the vertical from each rest to the next, positive to the left.
+    restlessness : float or None
+        How near to rest it ever comes, see ``rest.restlessness``.
     field : FieldEvidence or None
         What the magnetometer said of the heading; None where it said nothing.
     """
@@ -186,6 +190,8 @@ class FootMotion(Motion):
     step_covariance_m2: Floats
     place_covariance_m2: Floats
     level: Bools
+    turn_rad: Floats
+    restlessness: float | None = None
     field: FieldEvidence | None = None
 
     def turned(self, yaw_rad: float) -> Self:
@@ -218,6 +224,7 @@ class FootMotion(Motion):
         half[:, 0], half[:, 3] = np.cos(0.5 * yaw_rad), np.sin(0.5 * yaw_rad)
         return replace(
             self,
+            turn_rad=self.turn_rad + np.diff(yaw_rad[self.rests.moment]),
             attitude=multiply(half, self.attitude),
             rate_radps=turn(self.rate_radps),
             acceleration_mps2=turn(self.acceleration_mps2),

@@ -108,23 +108,24 @@ def _typical_swing(level: Floats, distance: int) -> float:
     return _quantile(level[peaks], 0.5) if peaks.any() else float(level.max(initial=0.0))
 
 
+@dataclass(frozen=True, eq=False)
+class Unrest:
+    """How far each row is from rest, ``level`` (n,), and the rows of a gait cycle."""
+
+    level: Floats
+    cycle_rows: int
+
+
 def unrest(
     acceleration_mps2: Floats, rate_radps: Floats, rate_hz: float, params: RestParams | None = None
-) -> Floats | None:
+) -> Unrest | None:
     """How far each row is from rest: about 1 in a typical swing, ``floor`` when still; None where nobody walks.
 
     u = √(½·(W/W̃)² + ½·(A/Ã)² + floor²), W and A the moving RMS of angular rate and free acceleration over a share
     of the gait cycle, W̃ and Ã their medians over the swings' peaks.
     """
     p = params or RestParams()
-    return _unrest(
-        acceleration_mps2, rate_radps, rate_hz, cycle_time(rate_radps, rate_hz, p) or p.default_cycle_s, p
-    )
-
-
-def _unrest(
-    acceleration_mps2: Floats, rate_radps: Floats, rate_hz: float, cycle: float, p: RestParams
-) -> Floats | None:
+    cycle = cycle_time(rate_radps, rate_hz, p) or p.default_cycle_s
     width = max(3, round(p.window_cycles * cycle * rate_hz))
     distance = max(1, round(0.6 * cycle * rate_hz))
     turning, moving = _moving_rms(rate_radps, width), _moving_rms(acceleration_mps2, width)
@@ -134,7 +135,7 @@ def _unrest(
     level: Floats = np.sqrt(
         0.5 * (turning / typical_turning) ** 2 + 0.5 * (moving / typical_moving) ** 2 + p.floor**2
     )
-    return level
+    return Unrest(level, max(3, round(cycle * rate_hz)))
 
 
 @dataclass(frozen=True)
@@ -197,14 +198,16 @@ def find_rests(
     Ours. It replaces İkizoğlu et al. 2018, §3.3 (``ikizoglu2018.find_rests``), which finds 5 % of the stances in
     ``mtw-10m-walk``.
     """
+    return rests_in(unrest(acceleration_mps2, rate_radps, rate_hz, params), params)
+
+
+def rests_in(found: Unrest | None, params: RestParams | None = None) -> Rests:
+    """The rests that an unrest shows; none where nobody walks."""
     p = params or RestParams()
-    level = unrest(acceleration_mps2, rate_radps, rate_hz, p)
-    if level is None:
+    valleys = [] if found is None else _one_per_cycle(found.level, p)
+    if found is None or not valleys:
         return no_rests()
-    valleys = _one_per_cycle(level, p)
-    if not valleys:
-        return no_rests()
-    start, end, moment = _extents(level, valleys, p)
+    start, end, moment = _extents(found.level, valleys, p)
     return Rests(start, end, moment, np.zeros((len(moment), 3)))
 
 
@@ -272,21 +275,16 @@ def _spread(values: Floats, rests: Rests) -> Floats:
     return spread
 
 
-def restlessness(
-    acceleration_mps2: Floats, rate_radps: Floats, rate_hz: float, params: RestParams | None = None
-) -> float | None:
+def restlessness(found: Unrest | None) -> float | None:
     """Median over the gait cycles of the least unrest in each: how near to rest a sensor ever comes; None where
     nobody walks.
 
     0.05 to 0.10 for the 92 feet of ``mtw-10m-walk`` (0.05 is the floor), 0.14 and more for shanks, ankles and
     thighs in ``mtw-leg-vicon``.
     """
-    p = params or RestParams()
-    cycle_s = cycle_time(rate_radps, rate_hz, p) or p.default_cycle_s
-    level = _unrest(acceleration_mps2, rate_radps, rate_hz, cycle_s, p)
-    if level is None:
+    if found is None:
         return None
-    cycle = max(3, round(cycle_s * rate_hz))
+    level, cycle = found.level, found.cycle_rows
     active = np.flatnonzero(level > 0.3)
     if not len(active) or active[-1] - active[0] < cycle:
         return None

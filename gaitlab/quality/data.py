@@ -14,7 +14,7 @@ from gaitlab.gait.measurement import Measurement
 from gaitlab.gait.strides import FootGait
 from gaitlab.motion.model import FootMotion, KneeMotion, LegPlace, Motion
 from gaitlab.motion.offset import STANDARD_GRAVITY_MPS2
-from gaitlab.motion.rest import find_rests, restlessness
+from gaitlab.motion.rest import find_rests, restlessness, unrest
 from gaitlab.quality.trial import invalid_strides
 from gaitlab.recording.model import Finding, Placement, Recording, Side
 from gaitlab.settings import Settings
@@ -127,7 +127,9 @@ def check_placements(feet: Mapping[Side, FootMotion], knees: Mapping[Side, KneeM
 
 
 def _restlessness(motion: Motion) -> float | None:
-    return restlessness(motion.acceleration_mps2, motion.rate_radps, motion.rate_hz)
+    if isinstance(motion, FootMotion):
+        return motion.restlessness
+    return restlessness(unrest(motion.acceleration_mps2, motion.rate_radps, motion.rate_hz))
 
 
 def merged(read: Sequence[Finding], analysed: Sequence[Finding]) -> tuple[Finding, ...]:

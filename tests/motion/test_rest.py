@@ -16,7 +16,7 @@ from gaitlab.motion.foot import track_foot
 from gaitlab.motion.free import free_motion
 from gaitlab.motion.integration import reset_at_rests, velocity_of
 from gaitlab.motion.model import Rests
-from gaitlab.motion.rest import cycle_time, find_rests, no_rests, rest_evidence, restlessness
+from gaitlab.motion.rest import cycle_time, find_rests, no_rests, rest_evidence, restlessness, unrest
 from gaitlab.recording import read_recording
 from gaitlab.recording.model import Placement, Side
 from gaitlab.simulation import TYPICAL_MTW, Plan, Stand, Turn, Walk, simulate
@@ -81,7 +81,7 @@ def test_noise_of_a_sensor_that_lies_still_is_no_walk() -> None:
     rng = np.random.default_rng(5)
     acceleration, rate = rng.normal(0, 0.03, (3000, 3)), rng.normal(0, 0.005, (3000, 3))
     assert len(find_rests(acceleration, rate, 100.0)) == 0
-    assert restlessness(acceleration, rate, 100.0) is None
+    assert restlessness(unrest(acceleration, rate, 100.0)) is None
 
 
 def test_the_gait_cycle_of_a_sine_is_its_period() -> None:
@@ -112,7 +112,7 @@ def test_a_foot_comes_to_rest_and_a_shank_does_not(data_dir: Path) -> None:
         path = data_dir / "mtw-leg-vicon" / f"S02-Trial-Walk-1-000_{device}.txt"
         sensor = read_recording(placements={Placement.LEFT_FOOT: path}).sensors[Placement.LEFT_FOOT]
         motion = free_motion(sensor, np.arange(sensor.n_samples) / 100.0)
-        found = restlessness(motion.acceleration_mps2, motion.rate_radps, 100.0)
+        found = restlessness(unrest(motion.acceleration_mps2, motion.rate_radps, 100.0))
         assert found is not None
         return found
 
