@@ -29,6 +29,7 @@ def build_parser() -> argparse.ArgumentParser:
     _doctor(commands)
     _validate(commands)
     _methods(commands)
+    _compare(commands)
     _demo(commands)
     _serve(commands)
     _user(commands)
@@ -55,17 +56,7 @@ def _analyze(commands: Commands) -> None:
         description="Analyse the recording of a walk and print its parameters. Where no placement is given it comes from"
         " file names, headers or a placement.json.",
     )
-    command.add_argument(
-        "paths", type=_path, nargs="*", metavar="PATH", help="a folder, a zip, or the files of one recording"
-    )
-    for placement in PLACEMENTS:
-        option = f"--{placement.replace('_', '-')}"
-        command.add_argument(
-            option, type=_path, metavar="FILE", help=f"file of the {placement.replace('_', ' ')}"
-        )
-    command.add_argument(
-        "--rate", type=_positive, metavar="HZ", help="sampling rate, where the files do not tell it"
-    )
+    _recording(command)
     command.add_argument(
         "--course", type=_positive, metavar="M", help="length of the timed course in metres (7.62: T25-FW)"
     )
@@ -94,6 +85,21 @@ def _analyze(commands: Commands) -> None:
         help="write a report",
     )
     command.set_defaults(run=_late("analyze", "run"), usage_error=command.error)
+
+
+def _recording(command: argparse.ArgumentParser) -> None:
+    """Which files are read, and where each was worn."""
+    command.add_argument(
+        "paths", type=_path, nargs="*", metavar="PATH", help="a folder, a zip, or the files of one recording"
+    )
+    for placement in PLACEMENTS:
+        option = f"--{placement.replace('_', '-')}"
+        command.add_argument(
+            option, type=_path, metavar="FILE", help=f"file of the {placement.replace('_', ' ')}"
+        )
+    command.add_argument(
+        "--rate", type=_positive, metavar="HZ", help="sampling rate, where the files do not tell it"
+    )
 
 
 def _doctor(commands: Commands) -> None:
@@ -149,6 +155,31 @@ def _methods(commands: Commands) -> None:
     )
     command.add_argument("--json", action="store_true", help="print JSON")
     command.set_defaults(run=_late("methods", "run"))
+
+
+def _compare(commands: Commands) -> None:
+    command = commands.add_parser(
+        "compare",
+        help="compare every published method with ours on a recording of your own",
+        description="Run every published method on a recording and print what each says beside ours: its numbers, the"
+        " difference with its 95 % interval, and the time it took. A method whose input is missing says which. With --cohort"
+        " each PATH is a recording of its own, and the lengths that the methods give are laid beside the known one.",
+    )
+    _recording(command)
+    command.add_argument(
+        "--known-length",
+        type=_positive,
+        metavar="M",
+        help="how far each foot walked, in metres: sets the step-length models' factors",
+    )
+    command.add_argument("--height", type=_positive, metavar="M", help="the person's height in metres")
+    command.add_argument("--sex", choices=("m", "f"), help="the person's sex")
+    command.add_argument(
+        "--methods", metavar="NAME,NAME", help="only these, and ours; gaitlab methods lists them"
+    )
+    command.add_argument("--cohort", action="store_true", help="several recordings of one known length")
+    command.add_argument("--json", action="store_true", help="print JSON")
+    command.set_defaults(run=_late("compare", "run"), wrong_usage=command.error)
 
 
 def _demo(commands: Commands) -> None:
