@@ -52,6 +52,8 @@ class UnscentedParams:
         Of the mean force over a block while nothing moves: what is left of the accelerometer's offset.
     lasting_s : float
         How long an acceleration of the body keeps its sign: a quarter of a gait cycle.
+    heading_sd_rad : float
+        Bound of the heading's uncertainty, which nothing lessens.
     spread : float
         κ of the transform; the middle point has the weight κ/(n + κ).
     """
@@ -62,6 +64,7 @@ class UnscentedParams:
     offset_sd_radps: float = constant(3e-3, "rad/s", _OURS)
     force_sd_mps2: float = constant(0.1, "m/s²", _OURS)
     lasting_s: float = constant(0.25, "s", _OURS)
+    heading_sd_rad: float = constant(0.5, "rad", "ours: √7 times it stays well below π")
     spread: float = constant(
         1.0, "1", "ours: κ of Julier and Uhlmann 1997, above 0 so that no weight is negative"
     )
@@ -145,9 +148,10 @@ def run(
     """Filter the blocks ``[first, last)``: the turn after each, shape (last − first, 4), and what is believed then."""
     p = params or UnscentedParams()
     turns = np.empty((last - first, 4))
+    sds = blocks.force_sd_mps2.tolist()
+    seconds = blocks.seconds.tolist()
     for j in range(first, last):
-        belief = _predicted(belief, blocks.lever_s[j], float(blocks.seconds[j]), p)
-        belief = _heard(belief, blocks.force_mps2[j], float(blocks.force_sd_mps2[j]), p)
+        belief = _stepped(belief, blocks.lever_s[j], seconds[j], blocks.force_mps2[j], sds[j], p)
         turns[j - first] = belief.turn
     return turns, belief
 
@@ -169,44 +173,46 @@ def controlled(belief: Belief, at: Floats, turn: Floats) -> Belief:
     return replace(belief, turn=moved / np.linalg.norm(moved))
 
 
-def _points(belief: Belief, p: UnscentedParams) -> tuple[Floats, Floats, Floats]:
-    """Sigma points as errors (13, 6) and as quaternions (13, 4), and their weights (13,)."""
-    size = len(belief.covariance)
-    root = np.linalg.cholesky((size + p.spread) * belief.covariance).T
+def _stepped(
+    belief: Belief, lever_s: Floats, seconds: float, force: Floats, sd: float, p: UnscentedParams
+) -> Belief:
+    """One block: sigma points of what was believed and of the block's noise, moved by the offset, and heard once."""
+    size = 6
+    noise = np.repeat([p.gyro_noise**2 * seconds, p.offset_walk**2 * seconds], 3)
+    root = np.linalg.cholesky((size + p.spread) * (belief.covariance + np.diag(noise))).T
     errors = np.concatenate([np.zeros((1, size)), root, -root])
-    weights = np.full(2 * size + 1, 0.5 / (size + p.spread))
+    weights = np.full((2 * size + 1, 1), 0.5 / (size + p.spread))
     weights[0] = p.spread / (size + p.spread)
-    return errors, multiply(strapdown.small_rotation(errors[:, :3]), belief.turn), weights
-
-
-def _predicted(belief: Belief, lever_s: Floats, seconds: float, p: UnscentedParams) -> Belief:
-    errors, turns, weights = _points(belief, p)
     offsets = belief.offset_radps + errors[:, 3:]
+    turns = multiply(strapdown.small_rotation(errors[:, :3]), belief.turn)
     turns = multiply(turns, strapdown.small_rotation(-offsets @ lever_s.T))
     moved = np.hstack([_vector(multiply(turns, conjugate(turns[0]))), offsets])
-    mean = weights @ moved
-    spread = moved - mean
-    covariance = (spread * weights[:, None]).T @ spread
-    diagonal = np.repeat([p.gyro_noise**2 * seconds, p.offset_walk**2 * seconds], 3)
-    turn = multiply(strapdown.small_rotation(mean[None, :3])[0], turns[0])
-    return Belief(turn / np.linalg.norm(turn), mean[3:], covariance + np.diag(diagonal))
-
-
-def _heard(belief: Belief, force: Floats, sd: float, p: UnscentedParams) -> Belief:
-    errors, turns, weights = _points(belief, p)
+    mean = np.sum(weights * moved, axis=0)
+    moved -= mean
     w, x, y, z = turns.T
-    up = np.stack([2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)], axis=1)
-    seen = STANDARD_GRAVITY_MPS2 * up
-    mean = weights @ seen
-    spread = seen - mean
-    weighted = spread * weights[:, None]
-    gain = np.linalg.solve(weighted.T @ spread + sd**2 * np.eye(3), weighted.T @ errors).T
-    step = gain @ (force - mean)
-    covariance = belief.covariance - gain @ (weighted.T @ errors)
-    turn = multiply(strapdown.small_rotation(step[None, :3])[0], belief.turn)
-    return Belief(
-        turn / np.linalg.norm(turn), belief.offset_radps + step[3:], 0.5 * (covariance + covariance.T)
-    )
+    seen = np.stack([2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)], axis=1)
+    seen *= STANDARD_GRAVITY_MPS2  # what the accelerometer of a still sensor reads, in the integral's axes
+    expected = np.sum(weights * seen, axis=0)
+    seen -= expected
+    common = (weights * seen).T @ moved
+    gain = np.linalg.solve((weights * seen).T @ seen + sd**2 * np.eye(3), common).T
+    mean += gain @ (force - expected)
+    covariance = (weights * moved).T @ moved - gain @ common
+    turn = multiply(strapdown.small_rotation(mean[None, :3])[0], turns[0])
+    return Belief(turn / np.linalg.norm(turn), mean[3:], _bounded(0.5 * (covariance + covariance.T), p))
+
+
+def _bounded(covariance: Floats, p: UnscentedParams) -> Floats:
+    """The covariance with the heading no more uncertain than sigma points can be without meeting behind the circle.
+
+    Nothing here hears the heading, so that in the end it is unknown; what is known of the tilt is not touched.
+    """
+    excess = float(np.sqrt(covariance[2, 2])) / p.heading_sd_rad
+    if excess <= 1.0:
+        return covariance
+    scale = np.array([1.0, 1.0, 1.0 / excess, 1.0, 1.0, 1.0])
+    bounded: Floats = covariance * np.outer(scale, scale)
+    return bounded
 
 
 def _vector(q: Floats) -> Floats:

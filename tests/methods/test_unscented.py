@@ -142,3 +142,14 @@ def test_no_rows_one_row_and_no_force_at_all_are_no_error() -> None:
         found = unscented.attitudes(blocks, turns)
         assert found.shape == (n, 4)
         assert np.all(np.isfinite(found))
+
+
+def test_a_heading_that_nobody_knows_any_more_does_no_harm_to_the_tilt() -> None:
+    truth, acc, gyr = swinging(3000)
+    lost = UnscentedParams(offset_sd_radps=0.5, gyro_noise=0.2)
+    blocks = unscented.blocks_of(acc, gyr, 100.0, lost)
+    turns, belief = unscented.run(blocks, unscented.first_belief(blocks, lost), 0, len(blocks.seconds), lost)
+    assert np.sqrt(belief.covariance[2, 2]) <= 0.5 + 1e-9
+    assert (
+        tilt_deg(Rotation.from_quat(unscented.attitudes(blocks, turns), scalar_first=True), truth).max() < 1.0
+    )

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from gaitlab.methods.thigh_model import ThighView
-from gaitlab.motion.model import FootMotion, KneeMotion, Offsets, Rests
-from gaitlab.recording.model import Placement, Side
+from gaitlab.motion.model import FootMotion, KneeMotion, Rests
+from gaitlab.recording.model import Side
+from tests import walks
 
 GRAVITY = 9.80665
-NO_OFFSETS = Offsets(0, 300, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), True, GRAVITY, 0.0)
 STAND_S, CYCLE_S, STRIDES = 3.0, 1.0, 8
 
 
@@ -68,45 +69,17 @@ def _foot(n: int, rate_hz: float, stride_m: float) -> FootMotion:
     rests = Rests(start, end, (start + end) // 2, np.zeros((len(start), 3)))
     place = np.zeros((n, 3))
     place[:, 0] = np.interp(np.arange(n), rests.moment, stride_m * np.arange(len(start)))
-    k = len(start)
-    return FootMotion(
-        **_motion(n, rate_hz, Placement.LEFT_FOOT, np.tile([1.0, 0.0, 0.0, 0.0], (n, 1)), place),
-        rests=rests,
-        displacement_sd_m=np.zeros(k - 1),
-        scale_sd=0.0,
-        doubtful_share=np.zeros(k - 1),
-        step_covariance_m2=np.zeros((k - 1, 3, 3)),
-        place_covariance_m2=np.zeros((k, 3, 3)),
-        level=np.ones(k - 1, dtype=bool),
-    )
+    base = walks.analysed().gait.feet[Side.LEFT].motion
+    return replace(base, **_motion(n, rate_hz, np.tile([1.0, 0.0, 0.0, 0.0], (n, 1)), place), rests=rests)
 
 
 def _leg(n: int, rate_hz: float, sensor: Rotation) -> KneeMotion:
-    rows, place = np.zeros(0, dtype=np.intp), np.zeros((n, 3))
+    place = np.zeros((n, 3))
     place[:, 0] = np.arange(n) / rate_hz
-    attitude = sensor.as_quat(scalar_first=True)
-    return KneeMotion(
-        **_motion(n, rate_hz, Placement.LEFT_KNEE, attitude, place),
-        cycle_start=rows,
-        cycle_end=rows,
-        residual_m=np.zeros(0),
-    )
+    base = walks.analysed().gait.knees[Side.LEFT].motion
+    return replace(base, **_motion(n, rate_hz, sensor.as_quat(scalar_first=True), place))
 
 
-def _motion(n: int, rate_hz: float, placement: Placement, attitude: np.ndarray, place: np.ndarray) -> dict:
-    zeros, never = np.zeros((n, 3)), np.zeros(n, dtype=bool)
-    return {
-        "placement": placement,
-        "rate_hz": rate_hz,
-        "time_s": np.arange(n) / rate_hz,
-        "received": ~never,
-        "saturated": never,
-        "attitude": attitude,
-        "rate_radps": zeros,
-        "acceleration_mps2": zeros,
-        "raw_velocity_mps": zeros,
-        "raw_position_m": place,
-        "velocity_mps": zeros,
-        "position_m": place,
-        "offsets": NO_OFFSETS,
-    }
+def _motion(n: int, rate_hz: float, attitude: np.ndarray, place: np.ndarray) -> dict[str, Any]:
+    """What the methods read of a movement; the rest stays that of a simulated walk."""
+    return {"rate_hz": rate_hz, "time_s": np.arange(n) / rate_hz, "attitude": attitude, "position_m": place}
