@@ -10,9 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from gaitlab.methods.constants import constant, constants_of
+from gaitlab.methods.heading import foot_heading
 from gaitlab.methods.model import FootView, Method, Need, Question, Track
-from gaitlab.methods.still import majority, rests_where, samples, size
-from gaitlab.motion.integration import position_of
+from gaitlab.methods.still import free_acceleration, majority, rests_where, samples, size
+from gaitlab.motion.integration import position_of, velocity_of
 from gaitlab.motion.model import Rests
 from gaitlab.motion.passages import leaving
 from gaitlab.recording.model import Bools, Floats
@@ -90,17 +91,35 @@ def correct(raw_velocity_mps: Floats, stances: Rests, *, letter: bool = False) -
     return np.asarray(raw_velocity_mps - removed)
 
 
-def path(foot: FootView, stances: Rests, *, letter: bool = False) -> Floats:
-    """Place of each row, shape (n, 3), over that in the middle of the first stance."""
-    place = position_of(correct(foot.motion.raw_velocity_mps, stances, letter=letter), foot.rate_hz)
+def path(
+    foot: FootView, stances: Rests, heading_rad: Floats | None = None, *, letter: bool = False
+) -> Floats:
+    """Place of each row, shape (n, 3), over that in the middle of the first stance.
+
+    ``heading_rad`` (n,): another heading than the orientation's own, by compass for example (§II.C).
+    """
+    raw = foot.motion.raw_velocity_mps
+    if heading_rad is not None:
+        away = heading_rad - foot_heading(foot.motion)
+        c, s = np.cos(away), np.sin(away)
+        x, y, z = free_acceleration(foot.motion).T
+        raw = velocity_of(np.stack([c * x - s * y, s * x + c * y, z], axis=1), foot.rate_hz)
+    place = position_of(correct(raw, stances, letter=letter), foot.rate_hz)
     origin = stances.moment[0] if len(stances) else 0
     return np.asarray(place - place[origin])
 
 
-def position(foot: FootView, params: StanceParams | None = None, *, letter: bool = False) -> Track:
+def position(
+    foot: FootView,
+    params: StanceParams | None = None,
+    heading_rad: Floats | None = None,
+    *,
+    letter: bool = False,
+) -> Track:
     """Places in the middle of each stance: double integration with the correction of eq. 4–6."""
     stances = rests(foot, params)
-    return Track(foot.time_s[stances.moment], path(foot, stances, letter=letter)[stances.moment])
+    place = path(foot, stances, heading_rad, letter=letter)
+    return Track(foot.time_s[stances.moment], place[stances.moment])
 
 
 def height(foot: FootView, params: StanceParams | None = None) -> Floats:

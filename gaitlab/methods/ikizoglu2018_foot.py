@@ -7,6 +7,7 @@ Analysis", 2018, §3.2 and §3.3.
 from __future__ import annotations
 
 from gaitlab.methods.model import Constant, FootView, Method, Need, Question, Track
+from gaitlab.methods.still import free_acceleration
 from gaitlab.motion import ikizoglu2018
 from gaitlab.motion.integration import position_of
 from gaitlab.motion.knee import track_knee
@@ -18,7 +19,7 @@ PAPER = "İkizoğlu et al. 2018"
 
 def rests(foot: FootView) -> Rests:
     """Rests: the resultant of the free acceleration below 0.15 m/s² for 5 successive samples (§3.3)."""
-    return ikizoglu2018.find_rests(foot.motion.acceleration_mps2, foot.rate_hz)
+    return ikizoglu2018.find_rests(free_acceleration(foot.motion), foot.rate_hz)
 
 
 def position(foot: FootView) -> Track:
@@ -28,7 +29,7 @@ def position(foot: FootView) -> Track:
 
 def reset_position(foot: FootView, at: Rests) -> Track:
     """The same with rests from any detector."""
-    velocity, _ = ikizoglu2018.reset_at_rests(foot.motion.acceleration_mps2, at, foot.rate_hz)
+    velocity, _ = ikizoglu2018.reset_at_rests(free_acceleration(foot.motion), at, foot.rate_hz)
     place = position_of(velocity, foot.rate_hz)[at.moment]
     return Track(foot.time_s[at.moment], place - place[:1])
 
@@ -50,7 +51,7 @@ _CONSTANTS = (
 )
 _FREE = (
     "The free acceleration is made with gaitlab's orientation, its offset that of the standing that was found; the paper"
-    " takes the device's. So it finds 13 % of the stances of mtw-10m-walk; gaitlab analyze --method ikizoglu2018 takes the"
+    " takes the device's. So it finds 16 % of the stances of mtw-10m-walk; gaitlab analyze --method ikizoglu2018 takes the"
     " device's where the file has it."
 )
 METHODS = (

@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from gaitlab.motion.model import Indices, Rests
+from gaitlab.motion.model import FootMotion, Indices, Rests
 from gaitlab.motion.moving import moving_mean
 from gaitlab.recording.model import Bools, Floats
 
@@ -14,6 +14,16 @@ from gaitlab.recording.model import Bools, Floats
 def size(vectors: Floats) -> Floats:
     """Length of each row of vectors (n, 3), shape (n,)."""
     return np.asarray(np.sqrt(np.einsum("ij,ij->i", vectors, vectors)))
+
+
+def free_acceleration(motion: FootMotion) -> Floats:
+    """Free acceleration of each row, world, shape (n, 3), as the orientation gives it; 0 in the first row.
+
+    ``FootMotion.acceleration_mps2`` holds what our smoother has learnt of tilt and offset; a published method is not to
+    profit from that.
+    """
+    velocity = motion.raw_velocity_mps
+    return np.asarray(np.diff(velocity, axis=0, prepend=velocity[:1]) * motion.rate_hz)
 
 
 def samples(seconds: float, rate_hz: float) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -154,3 +155,20 @@ def test_the_knees_are_those_of_the_motion_room() -> None:
             found.position_m, track_knee(knee, time_s, motion, shift, name).position_m
         )
     assert method("gaitlab", Question.KNEE).run is leg_knee
+
+
+@pytest.mark.parametrize(
+    "one", [one for one in FEET if one.name != "gaitlab"], ids=lambda m: f"{m.question.name}-{m.name}"
+)
+def test_no_published_method_profits_from_our_smoother(one: Method) -> None:
+    """But for the orientation, and the first rest that headings and heights count from."""
+    foot = walked()
+    zero = np.zeros_like(foot.motion.position_m)
+    other = replace(foot.motion, acceleration_mps2=zero, velocity_mps=zero, position_m=zero)
+    plain, blind = one.run(foot), one.run(replace(foot, motion=other))
+    if isinstance(plain, Rests):
+        np.testing.assert_array_equal(blind.moment, plain.moment)
+    elif isinstance(plain, Track):
+        np.testing.assert_array_equal(blind.place_m, plain.place_m)
+    else:
+        np.testing.assert_array_equal(blind, plain)

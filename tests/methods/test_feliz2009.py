@@ -8,6 +8,7 @@ import numpy as np
 
 from gaitlab.methods import feliz2009_stance as feliz
 from gaitlab.methods.closing import closing_of
+from gaitlab.methods.heading import foot_heading
 from gaitlab.methods.still import rests_where
 from gaitlab.motion.integration import position_of
 from gaitlab.recording.model import Bools, Floats, Side
@@ -101,6 +102,18 @@ def test_a_perfect_walk_is_followed() -> None:
     assert np.abs(climbed).max() < 0.05  # below 1 rad/s the foot still rolls
     letter = feliz.position(foot, letter=True)
     assert np.abs(letter.place_m - track.place_m).max() > 1e-4
+
+
+def test_another_heading_bends_the_path_as_much() -> None:
+    """A heading that grows by 1 rad over the walk turns its last stride by 1 rad more than its first."""
+    foot = walked(None)
+    ours = foot_heading(foot.motion)
+    plain, same = feliz.position(foot), feliz.position(foot, heading_rad=ours)
+    np.testing.assert_allclose(same.place_m, plain.place_m, atol=1e-9)
+    bent = feliz.position(foot, heading_rad=ours + foot.time_s / foot.time_s[-1])
+    first, last = (np.diff(track.place_m, axis=0)[[1, -2], :2] @ [1.0, 1j] for track in (plain, bent))
+    middle = 0.5 * (plain.time_s[1:] + plain.time_s[:-1])[[1, -2]] / foot.time_s[-1]
+    np.testing.assert_allclose(np.angle(last / first), middle, atol=0.03)
 
 
 def test_the_mounting_does_not_matter() -> None:
