@@ -61,12 +61,12 @@ class Side:
         return answer
 
 
-def spread(values: Sequence[float]) -> str:
+def spread(values: Sequence[float], digits: int = 1) -> str:
     """Median and quartiles."""
     if len(values) < 2:
-        return f"{values[0]:8.1f}"
+        return f"{values[0]:8.{digits}f}"
     low, middle, high = statistics.quantiles(values, n=4, method="inclusive")
-    return f"{middle:8.1f}  ({low:.1f} to {high:.1f})"
+    return f"{middle:8.{digits}f}  ({low:.{digits}f} to {high:.{digits}f})"
 
 
 def cold(command: Sequence[str], environment: dict[str, str]) -> tuple[float, Any]:
@@ -78,8 +78,8 @@ def cold(command: Sequence[str], environment: dict[str, str]) -> tuple[float, An
     return seconds, side.first
 
 
-def command_line(left: Path, right: Path, environment: dict[str, str]) -> tuple[float, float]:
-    """Seconds and peak MB (NaN where the system does not say) of one ``gaitlab analyze`` from start to end."""
+def command_line(left: Path, right: Path, environment: dict[str, str]) -> tuple[float, float, float]:
+    """Seconds, seconds of processor time and peak MB (NaN where the system does not say) of one ``gaitlab analyze``."""
     words = ["analyze", "--left-foot", str(left), "--right-foot", str(right), "--out", "-"]
     began = time.perf_counter()
     process = subprocess.Popen(  # noqa: S603
@@ -87,13 +87,14 @@ def command_line(left: Path, right: Path, environment: dict[str, str]) -> tuple[
     )
     if not hasattr(os, "wait4"):
         process.wait()
-        return time.perf_counter() - began, float("nan")
+        return time.perf_counter() - began, float("nan"), float("nan")
     _, status, usage = os.wait4(process.pid, 0)
     seconds = time.perf_counter() - began
     process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode:
         raise SystemExit("gaitlab analyze failed.")
-    return seconds, usage.ru_maxrss * (1 if sys.platform == "darwin" else 1024) / 1e6
+    peak = usage.ru_maxrss * (1 if sys.platform == "darwin" else 1024) / 1e6
+    return seconds, usage.ru_utime + usage.ru_stime, peak
 
 
 def warm(commands: dict[str, list[str]], environment: dict[str, str], repeats: int) -> None:
@@ -149,16 +150,21 @@ def main() -> None:
         timed = {**commands, "gaitlab": [*commands["gaitlab"], "--pandas"]}
         first = cold(commands["gaitmap"], environment)[0] if "gaitmap" in commands else None
         warm(timed, environment, chosen.repeats)
-        print(f"Cold, a new process to its first result, median (quartiles) of {chosen.cold}")
-        if chosen.cold:
-            runs = [command_line(chosen.left, chosen.right, environment) for _ in range(chosen.cold)]
-            print(f"  {'gaitlab analyze, s':<34}{spread([seconds for seconds, _ in runs])}")
-            print(f"  {'gaitlab analyze, peak MB':<34}{spread([peak for _, peak in runs])}")
-        for name, command in commands.items():
-            starts = [cold(command, environment) for _ in range(chosen.cold)]
-            if starts:
-                print(f"  {name + ' from Python, s':<34}{spread([seconds for seconds, _ in starts])}")
-                print(f"  {name + ' from Python, peak MB':<34}{spread([a['peak_mb'] for _, a in starts])}")
+        print(f"Cold, a new process to its first result, median (quartiles) of {chosen.cold} in turn")
+        runs: dict[str, list[tuple[float, float, float]]] = {}
+        for _ in range(chosen.cold):
+            runs.setdefault("gaitlab analyze", []).append(
+                command_line(chosen.left, chosen.right, environment)
+            )
+            for name, command in commands.items():
+                seconds, answer = cold(command, environment)
+                runs.setdefault(f"{name} from Python", []).append(
+                    (seconds, answer["cpu_s"], answer["peak_mb"])
+                )
+        for name, taken in runs.items():
+            print(f"  {name + ', s':<34}{spread([seconds for seconds, _, _ in taken], 2)}")
+            print(f"  {name + ', processor s':<34}{spread([seconds for _, seconds, _ in taken], 2)}")
+            print(f"  {name + ', peak MB':<34}{spread([peak for _, _, peak in taken])}")
         if first is not None:
             print(f"  {'gaitmap, nothing compiled yet, s':<34}{first:8.1f}")
 

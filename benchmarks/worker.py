@@ -45,7 +45,7 @@ def serve(
     analyse : from there to a word on what was found.
     other : timed beside them, for comparison.
     """
-    say({"found": analyse(read()), "peak_mb": peak_mb()})
+    say({"found": analyse(read()), "peak_mb": peak_mb(), "cpu_s": time.process_time()})
     for _ in sys.stdin:
         began, began_cpu = time.perf_counter(), time.process_time()
         data = read()
