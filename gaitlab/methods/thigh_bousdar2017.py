@@ -3,6 +3,11 @@
 Bousdar Ahmed and Metzger 2017, §II-C, eq. 3–6, fig. 6. The system itself is their reference [12] (Munoz Diaz 2015),
 which we do not have: an unscented filter for the thigh's orientation and a step length from the swing of its pitch are
 all that the paper says of it; what is assumed stands in ``unscented`` and ``thigh_model``.
+
+Measured on the two thighs of ``mtw-leg-vicon``: with sensors as good as an MTw the corrections do not help (tilt against
+the optical thigh 4.6° RMS without and 4.8° with, strides 10.5 and 10.6 cm), for what leaves the zone there is the
+standing person's own roll. With an offset of the gyroscope that walks by 0.04 rad/s/√s they do (tilt 18.5 and 12.7°,
+strides 28 and 20 cm); the heading they do not mend.
 """
 
 from __future__ import annotations

@@ -139,10 +139,14 @@ def thigh_view(
     factors: SwingFactors | None = None,
     links: Links = ADULT,
 ) -> ThighView:
-    """What the methods are given of a sensor on the thigh; ``motion`` is worked out where it is not at hand."""
+    """What the methods are given of a sensor on the thigh; ``motion`` is worked out where it is not at hand.
+
+    Where nobody stood, ``standing`` is empty.
+    """
     calibrated = calibrate(sensor)
     motion = motion or track_knee(sensor, time_s, foot, shift)
-    standing = (calibrated.offsets.start, calibrated.offsets.end)
+    offsets = calibrated.offsets
+    standing = (offsets.start, offsets.end if offsets.standing else offsets.start)
     return ThighView(
         foot.placement.side,
         sensor.rate_hz,
