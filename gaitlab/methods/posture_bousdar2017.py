@@ -1,6 +1,10 @@
 """Whether a thigh's orientation makes sense: the comfort zone of the metatarsal in stance.
 
 Bousdar Ahmed and Metzger 2017, §II-B and §II-C, fig. 3, 5 and 7, eq. 3–4.
+
+Measured on the optical left thigh of ``mtw-leg-vicon``: of six stances the five of straight walking are coherent (roll
+−3.2° to 0.4°, pitch −18.6° to 14.6°), that of the turn is not (roll up to 7.2°), and neither is standing with the feet
+apart (10°). The zone is for walking straight on.
 """
 
 from __future__ import annotations

@@ -109,6 +109,11 @@ class ThighTrack:
     correction_rad: Floats
     reason: str = ""
 
+    def places_at(self, rows: Indices) -> Floats:
+        """Where the strides so far have led at each of ``rows``, shape (len(rows), 3): for rows in which the foot rests."""
+        places: Floats = self.place_m[np.searchsorted(self.stride_row, rows)]
+        return places
+
 
 @dataclass(frozen=True)
 class StrideParams:

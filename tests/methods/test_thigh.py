@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import os
 from dataclasses import replace
 from functools import cache
@@ -11,7 +12,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from gaitlab.methods.leg_model import hip_angles
+from gaitlab.methods.leg_model import LegAngles, hip_angles
 from gaitlab.methods.posture_bousdar2017 import ZONE, judge
 from gaitlab.methods.thigh_bousdar2017 import METHODS, correction_turn, filtered, track, track_corrected
 from gaitlab.methods.thigh_gaitlab import track as track_ours
@@ -172,6 +173,8 @@ def test_a_foot_s_stride_is_the_known_length_of_its_thigh_s() -> None:
     np.testing.assert_allclose(foot_lengths(thigh.view, found.stride_row), 1.3, atol=1e-9)
     again = track(calibrated(thigh.view, found, STRIDES))
     assert again.length_m[1:] == pytest.approx(1.3, rel=0.1)
+    rests = thigh.view.foot.rests.moment
+    np.testing.assert_allclose(np.diff(found.places_at(rests)[:, 0]), found.length_m, atol=0.02)
     assert np.isnan(foot_lengths(thigh.view, np.array([0, 10**6]))).all()
 
 
@@ -233,6 +236,26 @@ def test_the_filter_tilts_a_real_thigh_as_vqf_does() -> None:
         found, ours = track(view), track_ours(view)
         assert np.degrees(np.sqrt(np.mean((found.pitch_rad - ours.pitch_rad) ** 2))) < 1.5
         assert np.degrees(np.sqrt(np.mean((found.roll_rad - ours.roll_rad) ** 2))) < 1.5
+
+
+@on_real_thighs
+def test_the_stances_of_straight_walking_are_coherent_and_that_of_the_turn_is_not() -> None:
+    """By the thigh that cameras saw: roll and pitch within the paper's limits but in the one stance that turns."""
+    rows = list(csv.reader((FOLDER / "vicon-left-leg.csv").read_text().splitlines()))
+    names, values = rows[0], np.array(rows[1:], float)
+    first, last = (int(values[k, names.index("row")]) for k in (0, -1))
+    thigh = values[:, [names.index(f"qLTH_{k}") for k in (1, 2, 3, 4)]]
+    heading, roll, pitch = hip_angles(thigh)
+    start, end = real_thighs()[Side.LEFT].stances
+    seen = (start >= first) & (end <= last)
+    angles = np.column_stack([roll, pitch, np.zeros((len(roll), 3))])
+    found = judge(LegAngles(angles, heading, start[seen] - first, end[seen] - first))
+    turning = np.ptp(
+        np.unwrap(heading)[np.linspace(start[seen], end[seen] - 1, 9).astype(int) - first], axis=0
+    )
+    assert len(turning) == 6
+    assert np.argmax(turning) == np.flatnonzero(~found.coherent)
+    assert 0.03 < found.outside_m.max() < 0.08
 
 
 @on_real_thighs
