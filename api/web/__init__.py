@@ -1,6 +1,6 @@
 """The pages: HTML for people, thin over the clinic; POST, redirect, GET."""
 
-from api.web import account, docs, patients, sessions, site, tokens, upload
+from api.web import account, comparison, docs, patients, sessions, site, tokens, upload
 from api.web.templates import error_page
 
 ROUTERS = (
@@ -8,6 +8,7 @@ ROUTERS = (
     patients.router,
     upload.router,
     sessions.router,
+    comparison.router,
     tokens.router,
     site.router,
     docs.router,

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gaitlab.analysis import analyze
-from gaitlab.comparison.comparing import LONGEST_WALK_M
+from gaitlab.comparison.comparing import LONGEST_WALK_M, SHORTEST_WALK_M
 from gaitlab.comparison.inputs import Inputs, inputs_of, missing
 from gaitlab.errors import InputError
 from gaitlab.methods.catalogue import of
@@ -82,7 +82,7 @@ def cohort(
     recordings : iterable of (name, function)
         The function reads the recording; its ``InputError`` becomes a problem, and the others count.
     """
-    if not 0.5 <= known_length_m <= LONGEST_WALK_M:
+    if not SHORTEST_WALK_M <= known_length_m <= LONGEST_WALK_M:
         raise InputError(
             "known_length", "The known length must be between 0.5 m and 10 km.", "Give it in metres."
         )

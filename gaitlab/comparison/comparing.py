@@ -22,7 +22,7 @@ from gaitlab.methods.model import Method, Question
 from gaitlab.methods.steps_signals import Person
 from gaitlab.recording.model import Recording, Side
 
-LONGEST_WALK_M = 10_000.0
+SHORTEST_WALK_M, LONGEST_WALK_M = 0.5, 10_000.0
 _log = logging.getLogger(__name__)
 
 
@@ -99,7 +99,7 @@ def compare(
 
 
 def _check(known_length_m: float | None, person: Person) -> None:
-    if known_length_m is not None and not 0.5 <= known_length_m <= LONGEST_WALK_M:
+    if known_length_m is not None and not SHORTEST_WALK_M <= known_length_m <= LONGEST_WALK_M:
         raise InputError(
             "known_length", "The known length must be between 0.5 m and 10 km.", "Give it in metres."
         )

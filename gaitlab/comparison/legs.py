@@ -62,7 +62,7 @@ def posture(inputs: Inputs, method: Method, side: Side, call: Timed) -> Said:
         Value("stances", int(judged.sum()), "", 0),
         Value("coherent", 100.0 * float(found.coherent[judged].mean()) if judged.any() else np.nan, "%", 0),
         Value("others out by", float(out.mean()) if len(out) else 0.0, "°", 1),
-        Value("at most", 100.0 * float(found.outside_m[judged].max(initial=0.0)), "cm", 1),
+        Value("its toe at most", 100.0 * float(found.outside_m[judged].max(initial=0.0)), "cm", 1),
     )
     return Said(values, None, "" if judged.any() else "No stance can be judged.")
 

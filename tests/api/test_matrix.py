@@ -61,6 +61,7 @@ RULES: dict[str, Rule] = {
     "GET /trials/{trial_id}/result.json": Rule("page", "session:read"),
     "GET /trials/{trial_id}/series.csv": Rule("page", "session:read"),
     "GET /trials/{trial_id}/figures/{name}.svg": Rule("page", "session:read"),
+    "GET /trials/{trial_id}/compare": Rule("page", "session:read"),
     "POST /trials/{trial_id}/analyses": Rule("page", "session:write"),
     "GET /tokens": Rule("page", "token:manage"),
     "POST /tokens": Rule("page", "token:manage"),
