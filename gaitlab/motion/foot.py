@@ -15,6 +15,7 @@ from gaitlab.motion.magnetometer import with_field
 from gaitlab.motion.model import FootMotion, Motion, Rests
 from gaitlab.motion.offset import STANDARD_GRAVITY_MPS2
 from gaitlab.motion.orientation import OrientationSource
+from gaitlab.motion.passages import leaving
 from gaitlab.motion.path import Anchor, follow
 from gaitlab.motion.quaternions import multiply, rotate
 from gaitlab.motion.rest import restlessness, rests_in, unrest
@@ -90,10 +91,21 @@ def _best_source(sensor: Sensor, calibrated: Calibrated) -> OrientationSource:
     return OrientationSource.STRAPDOWN if calibrated.offsets.standing else OrientationSource.VQF
 
 
-def _kept(free: Motion, found: Rests) -> Bools:
-    """Which rests are new ones, by a path with the drift taken out in proportion to time."""
-    velocity, rests = reset_at_rests(free.raw_velocity_mps, found)
-    return _moved_before(free, rests, position_of(velocity, free.rate_hz))
+def _kept(free: Motion, rests: Rests, evidence: StrideEvidence | None = None) -> Bools:
+    """True for each rest before which the foot moved away from the rest before it (the first counts as moved).
+
+    By a path with the drift taken out in proportion to time: a velocity that should be zero at both ends of a passage has
+    carried the place astray by its mean times the duration.
+    """
+    limits = evidence or StrideEvidence()
+    if not len(rests):
+        return np.zeros(0, dtype=np.bool_)
+    last, first = leaving(rests)[:-1], rests.start[1:]
+    velocity, position = free.raw_velocity_mps, free.raw_position_m
+    astray = 0.5 * (velocity[last] + velocity[first]) * ((first - last) / free.rate_hz)[:, None]
+    length = np.linalg.norm(position[first] - position[last] - astray, axis=1)
+    turn = np.abs(heading_change(free, rests))
+    return np.concatenate([[True], (length >= limits.min_length_m) | (turn >= limits.min_turn_rad)])
 
 
 def _level(seen: Oriented, up: Floats, rests: Rests) -> tuple[Floats, Floats]:
@@ -115,18 +127,6 @@ def _level(seen: Oriented, up: Floats, rests: Rests) -> tuple[Floats, Floats]:
     for k in range(2):
         correction[:, k] = np.interp(rows, rests.moment, tilt[:, k])
     return multiply(strapdown.small_rotation(correction), multiply(first, seen.attitude)), tilt
-
-
-def _moved_before(
-    free: Motion, rests: Rests, position: Floats, evidence: StrideEvidence | None = None
-) -> Bools:
-    """True for each rest before which the foot moved away from the rest before it (the first counts as moved)."""
-    limits = evidence or StrideEvidence()
-    if not len(rests):
-        return np.zeros(0, dtype=np.bool_)
-    length = np.linalg.norm(np.diff(position[rests.moment], axis=0), axis=1)
-    turn = np.abs(heading_change(free, rests))
-    return np.concatenate([[True], (length >= limits.min_length_m) | (turn >= limits.min_turn_rad)])
 
 
 def _joined(rests: Rests, moved: Bools) -> Rests:

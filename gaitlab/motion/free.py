@@ -91,7 +91,9 @@ def moved(sensor: Sensor, time_s: Floats, calibrated: Calibrated, seen: Oriented
         sensor.received,
         sensor.saturated,
         seen.attitude,
-        strapdown.apply(matrices(seen.attitude), calibrated.gyr_radps),
+        strapdown.apply(
+            seen.rotation, calibrated.gyr_radps
+        ),  # a turn about the rate leaves the rate as it is
         acceleration,
         velocity,
         position,
