@@ -14,7 +14,10 @@ from scipy.signal import lfilter
 
 from gaitlab.methods.calibration_linear import (
     FREE_RUN,
+    FREE_RUN_OF_TWO,
     PAPER,
+    SIMULATED,
+    STABLE,
     Orders,
     Search,
     identify,
@@ -37,8 +40,13 @@ class NarxParams:
     nk: int = constant(1, "samples", "table 2")
     units: int = constant(4, "", "ours: the paper does not name its nonlinear regression")
     decay: float = constant(
-        0.001, "", "ours: weight of the parameters' mean square beside the mean squared error"
+        0.01, "", "ours: weight of the parameters' mean square beside the mean squared error"
     )
+
+    @property
+    def size(self) -> int:
+        """How many parameters there are."""
+        return self.na + self.nb + 1 + self.units * (self.na + self.nb + 2)
 
 
 @dataclass(frozen=True)
@@ -49,7 +57,7 @@ class HammersteinWienerParams:
     nf: int = constant(3, "", "table 2")
     nk: int = constant(1, "samples", "table 2")
     pieces: int = constant(10, "", "table 2")
-    decay: float = constant(0.001, "", "ours: as for the network; keeps pieces that saw no data straight")
+    decay: float = constant(0.01, "", "ours: as for the network; keeps pieces that saw no data straight")
 
 
 @dataclass(frozen=True)
@@ -62,7 +70,7 @@ class NetworkParams:
         3, "samples", "ours: u(t) to u(t − 2), as far back as the small models; §2.2 names none"
     )
     decay: float = constant(
-        0.001, "", "ours: weight of the parameters' mean square beside the mean squared error"
+        0.01, "", "ours: weight of the parameters' mean square beside the mean squared error"
     )
     seed: int = constant(2018, "", "ours: the first weights are drawn")
 
@@ -96,24 +104,63 @@ def narx(measured: Floats, reference: Floats, train: int) -> Calibration:
     """y(t) = L·x(t) + l + Σ αᵢ tanh(βᵢ·x(t) + γᵢ) with x = y(t − 1), y(t − 2), u(t − 1), u(t − 2).
 
     Trained on one-step predictions, as the linear models are; in the free run its own outputs take the place of y. The
-    linear part begins as the ARX model; the units, bounded, cannot run away.
+    linear part begins as the ARX model and is kept stable; the units are bounded.
     """
     p = NarxParams()
-    n_inputs = p.na + p.nb
-    size = n_inputs + 1 + p.units * (n_inputs + 2)
 
     def fit(u: Floats, y: Floats, train: int) -> Fitted:
-        lagged = [shifted(y[:train], k) for k in range(1, p.na + 1)]
-        lagged += [shifted(u[:train], p.nk + k) for k in range(p.nb)]
-        x = np.stack(lagged, axis=1)
+        x = np.column_stack([*(shifted(y[:train], k) for k in range(1, p.na + 1)), _inputs(u, p)[:train]])
         linear = np.linalg.lstsq(np.column_stack([x, np.ones(train)]), y[:train], rcond=None)[0]
-        rng = np.random.default_rng(p.units)
-        start = np.concatenate([linear, rng.normal(0.0, 0.1, size - len(linear))])
-        rest = np.concatenate([linear, np.zeros(size - len(linear))])
-        found = _trained(lambda v: _narx(_tamed(v, p), x) - y[:train], start, p.decay, rest)
-        return found, _narx_run(_tamed(found, p), u, p)
 
-    return calibration(measured, reference, train, Search().rows_each * size, fit)
+        def errors(parameters: Floats) -> Floats:
+            free, units = _split(_tamed(parameters, p)[None, :], p)
+            inner = np.tanh(x @ units[0, :, :-2].T + units[0, :, -2])
+            return np.asarray(x @ free[0, :-1] + free[0, -1] + inner @ units[0, :, -1] - y[:train])
+
+        found = _tamed(_trained(errors, *_narx_start(linear, p)), p)
+        return found, _narx_run(found[None, :], _inputs(u, p), p)[0]
+
+    return calibration(measured, reference, train, Search().rows_each * p.size, fit)
+
+
+def narx_free_run(measured: Floats, reference: Floats, train: int) -> Calibration:
+    """The same model with the least squared errors of the free run itself, from the linear one of that kind on."""
+    p = NarxParams()
+
+    def fit(u: Floats, y: Floats, train: int) -> Fitted:
+        b1, b2, f1, f2, level = identify(u[:train], y[:train], FREE_RUN_OF_TWO)
+        linear = np.array([-f1, -f2, b1, b2, level * (1.0 + f1 + f2)])
+        inputs = _inputs(u, p)
+
+        def errors(parameters: Floats) -> Floats:
+            return np.asarray(_narx_run(parameters[None, :], inputs[:train], p)[0] - y[:train])
+
+        def gradient(parameters: Floats) -> Floats:
+            step = Search().step
+            moved = np.concatenate([parameters[None, :], parameters + step * np.eye(p.size)])
+            runs = _narx_run(moved, inputs[:train], p)
+            return np.asarray((runs[1:] - runs[0]).T / step)
+
+        found = _trained(errors, *_narx_start(linear, p), gradient)
+        return found, _narx_run(found[None, :], inputs, p)[0]
+
+    return calibration(measured, reference, train, Search().rows_each * p.size, fit)
+
+
+def _inputs(u: Floats, p: NarxParams) -> Floats:
+    return np.stack([shifted(u, p.nk + k) for k in range(p.nb)], axis=1)
+
+
+def _narx_start(linear: Floats, p: NarxParams) -> tuple[Floats, float, Floats]:
+    """Where the training begins, how strongly it is drawn, and where to: the linear model."""
+    drawn = np.random.default_rng(p.units).normal(0.0, 0.1, p.size - len(linear))
+    return np.concatenate([linear, drawn]), p.decay, np.concatenate([linear, np.zeros(len(drawn))])
+
+
+def _split(parameters: Floats, p: NarxParams) -> tuple[Floats, Floats]:
+    """Linear part with its constant, (k, 5), and units (β, γ, α), (k, units, 6), of k models."""
+    n = p.na + p.nb
+    return parameters[:, : n + 1], parameters[:, n + 1 :].reshape(len(parameters), p.units, n + 2)
 
 
 def _tamed(parameters: Floats, p: NarxParams) -> Floats:
@@ -122,25 +169,21 @@ def _tamed(parameters: Floats, p: NarxParams) -> Floats:
     return np.concatenate([-poles[1:], parameters[p.na :]])
 
 
-def _narx(parameters: Floats, x: Floats) -> Floats:
-    """Output to regressors, shape (n, 4)."""
-    n_inputs = x.shape[1]
-    units = parameters[n_inputs + 1 :].reshape(-1, n_inputs + 2)
-    inner = np.tanh(x @ units[:, :n_inputs].T + units[:, n_inputs])
-    return np.asarray(x @ parameters[:n_inputs] + parameters[n_inputs] + inner @ units[:, n_inputs + 1])
-
-
-def _narx_run(parameters: Floats, u: Floats, p: NarxParams) -> Floats:
-    """Free run from rest: each output is needed for the next, so sample by sample."""
-    inputs = np.stack([shifted(u, p.nk + k) for k in range(p.nb)], axis=1)
-    run = np.zeros(len(u))
-    past = np.zeros(p.na)
-    for t, now in enumerate(inputs):
-        run[t] = _narx(parameters, np.concatenate([past, now])[None, :])[0]
-        if abs(run[t]) > Goodness().away:
-            return np.full(len(u), np.nan)
-        past = np.concatenate([run[t : t + 1], past[:-1]])
-    return run
+def _narx_run(parameters: Floats, inputs: Floats, p: NarxParams) -> Floats:
+    """Free runs of k models from rest, shape (k, n). Each output is needed for the next, so it goes sample by sample, but
+    through all models at once; a run that runs away is held at the bound."""
+    linear, units = _split(parameters, p)
+    of_inputs = inputs @ linear[:, p.na : -1].T + linear[:, -1]
+    in_units = np.einsum("tj,kuj->tku", inputs, units[:, :, p.na : -2]) + units[:, :, -2]
+    own, own_units, weight = linear[:, : p.na], units[:, :, : p.na], units[:, :, -1]
+    past, bound = np.zeros((len(parameters), p.na)), 2.0 * Goodness().away
+    run = np.zeros((len(inputs), len(parameters)))
+    for t in range(len(inputs)):
+        inner = np.tanh(in_units[t] + (own_units * past[:, None, :]).sum(axis=2))
+        now = of_inputs[t] + (own * past).sum(axis=1) + (weight * inner).sum(axis=1)
+        run[t] = np.minimum(np.maximum(now, -bound), bound)
+        past = np.column_stack([run[t], past[:, :-1]])
+    return np.ascontiguousarray(run.T)
 
 
 # ------------------------------------------------------------------------------------------------ Hammerstein–Wiener
@@ -253,7 +296,7 @@ def _layers(parameters: Floats, x: Floats, sizes: Sequence[int]) -> tuple[list[F
 
 # ------------------------------------------------------------------------------------------------ catalogue
 
-UNITS = "The paper does not name its nonlinear regression: a linear part and four tanh units, trained on one step."
+UNITS = "The paper does not name its nonlinear regression: a linear part and four tanh units."
 SEEN = "What the network saw is not said: the three newest samples of the measured signal."
 DECAY = "A small weight on the squares of the parameters stands for the early stop of MATLAB's training."
 STRAIGHT = (
@@ -274,7 +317,17 @@ def _method(
 
 
 METHODS = (
-    _method("nonlinear_arx", "nonlinear ARX", PAPER, constants_of(NarxParams()), narx, UNITS, DECAY),
+    _method("nonlinear_arx", "nonlinear ARX", PAPER, constants_of(NarxParams()), narx, UNITS, DECAY, STABLE),
+    _method(
+        "nonlinear_arx_free_run",
+        "nonlinear ARX, free run",
+        PAPER,
+        constants_of(NarxParams()),
+        narx_free_run,
+        UNITS,
+        DECAY,
+        SIMULATED,
+    ),
     _method(
         "hammerstein_wiener",
         "Hammerstein–Wiener",

@@ -23,6 +23,7 @@ from gaitlab.methods.calibration_model import (
 from gaitlab.methods.calibration_signals import calibration_pairs
 from gaitlab.recording import Placement, Side, read_recording
 from gaitlab.recording.model import Floats
+from gaitlab.validation.leg_vicon_check import read_optical, sensors_of
 from tests.walks import analysed
 
 METHODS = {method.name: method for method in (*linear.METHODS, *nonlinear.METHODS)}
@@ -131,6 +132,7 @@ def test_nonlinear_arx_follows_a_saturating_system() -> None:
     for t in range(2, N):
         y[t] = 0.5 * y[t - 1] - 0.2 * y[t - 2] + np.tanh(1.5 * u[t - 1])
     assert nonlinear.narx(u, y, TRAIN).fit_test_percent > 90.0
+    assert nonlinear.narx_free_run(u, y, TRAIN).fit_test_percent > 90.0
     assert linear.armax(u, y, TRAIN).fit_test_percent < 85.0
 
 
@@ -236,8 +238,6 @@ def test_pairs_need_a_stretch_in_sight() -> None:
 
 def test_a_real_foot_beside_cameras_is_calibrated_on_the_first_half_of_its_walk(data_dir: Path) -> None:
     """The drift of two plain integrations: at least half of what is left without a model is gone in the second half."""
-    from gaitlab.validation.leg_vicon_check import read_optical, sensors_of
-
     folder = data_dir / "mtw-leg-vicon"
     recording = read_recording(placements={Placement.LEFT_FOOT: sensors_of(folder)["left_foot"]})
     motion = analyze(recording).gait.feet[Side.LEFT].motion

@@ -22,7 +22,10 @@ from gaitlab.methods.length_sun2015 import METHOD
 from gaitlab.methods.model import Lengths
 from gaitlab.methods.steps_signals import Person, Sex, StepSignals, step_signals, stride_signals
 from gaitlab.methods.view import foot_view
+from gaitlab.motion.free import free_motion
 from gaitlab.recording import Placement, Recording, Side, read_recording
+from gaitlab.validation.leg_vicon_check import sensors_of
+from gaitlab.validation.truth import OpticalPath
 from tests.walks import analysed, out_and_back, turned
 
 G = 9.80665
@@ -201,3 +204,33 @@ def test_models_on_real_walks_of_one_person(data_dir: Path) -> None:
     for name in sorted(set(MODELS) - {"height"}):
         errors = leave_one_out(MODELS[name], walks, Person(1.75, Sex.FEMALE))
         assert np.abs(errors).max() < 1.0 / 6.0, (name, errors)
+
+
+def test_a_sensor_on_the_pelvis_feels_every_step(data_dir: Path) -> None:
+    """Nearer to what the models were made for: steps between the feet's contacts, against the pelvis under cameras."""
+    folder = data_dir / "mtw-leg-vicon"
+    files = sensors_of(folder)
+    (pelvis_file,) = folder.glob("*00B40B91*")
+    feet = {Placement.foot(side): files[f"{side}_foot"] for side in Side}
+    recording = read_recording(placements={**feet, Placement.LEFT_KNEE: pelvis_file})
+    pelvis = free_motion(recording.sensors[Placement.LEFT_KNEE], recording.time_s(Placement.LEFT_KNEE))
+    gait = analyze(Recording({place: recording.sensors[place] for place in feet})).gait
+    contacts = np.sort(np.concatenate([foot.events.initial_contact_s for foot in gait.feet.values()]))
+    steps = step_signals(pelvis.acceleration_mps2[:, 2], pelvis.time_s, contacts[:-1], contacts[1:])
+
+    table = np.genfromtxt(folder / "vicon-left-leg.csv", delimiter=",", names=True)
+    place = np.stack([table[f"PELV_{axis}"] for axis in (1, 2, 3)], axis=1)
+    optical = OpticalPath(recording.time_s(Placement.LEFT_FOOT)[table["row"].astype(int)], place)
+    real = optical.horizontal_length(steps.start_s, steps.end_s)
+    walked = np.isfinite(real) & (real > 0.4)
+    steps, real = steps.only(walked), real[walked]
+    assert len(real) == 10
+    assert np.all(
+        (steps.variance_g2 > 0.005) & (steps.variance_g2 < 0.05)
+    )  # the paper's fig. 3 and 6 are of this size
+
+    known = KnownWalk(steps, float(real.sum()))
+    assert 0.6 < calibrate(METHOD, [known], NOBODY).k < 0.9
+    for name in sorted(set(MODELS) - {"height", "gaitlab"}):
+        lengths = MODELS[name].run(steps, NOBODY, calibrate(MODELS[name], [known], NOBODY))
+        assert by_class(lengths.length_m, real)[-1].deviation_percent < 18.0, name
