@@ -74,12 +74,13 @@ def by_height(steps: StepSignals, person: Person, factors: Factors) -> Lengths:
     """0.415 of a man's height, 0.413 of a woman's (§II, 2); no factor: nothing of it is individual but the height."""
     share = {Sex.MALE: HeightParams().male_share, Sex.FEMALE: HeightParams().female_share}
     everywhere = np.ones(len(steps), dtype=np.bool_)
+    height = person.height_m if person.height_m is not None and person.height_m > 0.0 else np.nan
     why: list[Why] = []
-    if person.height_m is None:
+    if np.isnan(height):
         why.append((everywhere, "the person's height is not known"))
     if person.sex is None:
         why.append((everywhere, "the person's sex is not known"))
-    length = share[person.sex] * person.height_m if person.sex and person.height_m else np.nan
+    length = share[person.sex] * height if person.sex is not None else np.nan
     return lengths_of(steps, np.full(len(steps), length), why)
 
 

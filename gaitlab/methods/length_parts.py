@@ -13,6 +13,7 @@ from gaitlab.recording.model import Bools, Floats
 NO_SAMPLES = "there are no samples in the step"
 NO_TIME = "the step takes no time"
 STILL = "the vertical acceleration does not change in the step"
+UNSAID = "the signals of the step are not known"
 Why = tuple[Bools, str]
 """Steps whose length cannot be determined, and why not."""
 
@@ -36,6 +37,8 @@ def lengths_of(
     for mask, text in reversed(why_not):
         for i in np.flatnonzero(mask):
             reason[i] = text
+    for i in np.flatnonzero(~np.isfinite(step_m)):
+        reason[i] = reason[i] or UNSAID
     known = np.array([not text for text in reason], dtype=np.bool_)
     length = np.where(known, step_m * steps.steps_each, np.nan)
     marked = np.zeros(n, dtype=np.bool_) if outside is None else outside & known

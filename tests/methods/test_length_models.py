@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -197,6 +199,7 @@ def test_linear_models_want_a_test_walk(name: str) -> None:
 
 def test_height_and_sex_are_asked_for_by_name() -> None:
     assert "height" in MODELS["height"].run(one_step(), Person(None, Sex.MALE), SET).reason[0]
+    assert "height" in MODELS["height"].run(one_step(), Person(float("nan"), Sex.MALE), SET).reason[0]
     assert "sex" in MODELS["height"].run(one_step(), Person(1.7), SET).reason[0]
 
 
@@ -213,3 +216,13 @@ def test_frequency_models_mark_uncommon_gaits() -> None:
     for name in ("frequency_linear", "frequency_nonlinear"):
         assert MODELS[name].run(one_step(frequency_spm=130.0), Person(), SET).outside[0]
         assert not MODELS[name].run(one_step(frequency_spm=100.0), Person(), SET).outside[0]
+
+
+@pytest.mark.parametrize("name", sorted(NAMES))
+@pytest.mark.parametrize(
+    "lost", ["max_g", "min_g", "mean_abs_g", "variance_g2", "frequency_spm", "duration_ms", "own_m"]
+)
+def test_a_length_is_a_number_or_has_a_reason(name: str, lost: str) -> None:
+    steps = replace(one_step(), **{lost: np.array([np.nan])})
+    lengths: Lengths = MODELS[name].run(steps, Person(1.8, Sex.MALE), SET)
+    assert np.isfinite(lengths.length_m[0]) == (lengths.reason[0] == "")
