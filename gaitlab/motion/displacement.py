@@ -38,6 +38,7 @@ def foot_motion(
     rests: Rests,
     step_covariance_m2: Floats,
     place_covariance_m2: Floats,
+    velocity_var_m2ps2: Floats,
     level: Bools,
     params: DisplacementParams | None = None,
 ) -> FootMotion:
@@ -58,6 +59,7 @@ def foot_motion(
         doubtful_share=_doubtful_share(free, rests),
         step_covariance_m2=step_covariance_m2,
         place_covariance_m2=place_covariance_m2,
+        velocity_var_m2ps2=velocity_var_m2ps2,
         level=level,
         turn_rad=turn,
     )

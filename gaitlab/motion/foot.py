@@ -142,5 +142,5 @@ def _unmoved(free: Motion, rests: Rests) -> FootMotion:
     moved = {"velocity_mps": velocity, "position_m": position_of(velocity, free.rate_hz)}
     k = len(rests)
     return foot_motion(
-        moved, free, rests, np.zeros((0, 3, 3)), np.zeros((k, 3, 3)), np.zeros(0, dtype=np.bool_)
+        moved, free, rests, np.zeros((0, 3, 3)), np.zeros((k, 3, 3)), np.zeros(0), np.zeros(0, dtype=np.bool_)
     )

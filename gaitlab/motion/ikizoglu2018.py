@@ -108,7 +108,7 @@ def track_foot(free: Motion) -> FootMotion:
     variance = 0.5 * (own + (own.mean() if k else 0.0)) * swing_s**2 / 3.0
     steps = variance[:, None, None] * np.eye(3)
     places = np.concatenate([np.zeros((min(len(rests), 1), 3, 3)), np.cumsum(steps, axis=0)])
-    foot = foot_motion(moved, free, rests, steps, places, np.zeros(k, dtype=np.bool_))
+    foot = foot_motion(moved, free, rests, steps, places, own, np.zeros(k, dtype=np.bool_))
     found = unrest(free.acceleration_mps2, free.rate_radps, free.rate_hz)
     return replace(foot, restlessness=restlessness(found))
 

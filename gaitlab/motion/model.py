@@ -173,6 +173,8 @@ class FootMotion(Motion):
         Of the sensor's displacement from each rest to the next.
     place_covariance_m2 : ndarray (k, 3, 3)
         Of its place at each rest against the first, drift of the heading included.
+    velocity_var_m2ps2 : ndarray (k − 1,)
+        Variance per axis that doubtful samples give the velocity over the movement between.
     level : ndarray of bool (k − 1,)
         The floor was taken to be level between the two rests.
     turn_rad : ndarray (k − 1,)
@@ -189,6 +191,7 @@ class FootMotion(Motion):
     doubtful_share: Floats
     step_covariance_m2: Floats
     place_covariance_m2: Floats
+    velocity_var_m2ps2: Floats
     level: Bools
     turn_rad: Floats
     restlessness: float | None = None

@@ -137,6 +137,7 @@ def follow(
         replace(rests, residual_mps=residual),
         smoothed.step_covariance,
         smoothed.covariance[:, :3, :3],
+        passages.velocity_var,
         smoothed.level,
     )
 

@@ -63,7 +63,7 @@ def built(
     )
     moved = {"velocity_mps": velocity, "position_m": position}
     none = np.zeros((0, 3, 3))
-    foot = foot_motion(moved, motion, no_rests(), none, none, np.zeros(0, dtype=np.bool_))
+    foot = foot_motion(moved, motion, no_rests(), none, none, np.zeros(0), np.zeros(0, dtype=np.bool_))
     return FootView(Side.LEFT, rate_hz, time_s, acc, gyr, mag, pressure_pa, foot)
 
 
