@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 METHODS = ("gaitlab", "ikizoglu2018")
 PLACEMENTS = ("left_foot", "right_foot", "left_knee", "right_knee")
-VALIDATION_SETS = ("10m-walk", "leg-vicon", "foot-mocap", "foot-loop", "all", "coverage")
+VALIDATION_SETS = ("10m-walk", "leg-vicon", "foot-mocap", "foot-loop", "all", "coverage", "methods")
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -126,7 +126,7 @@ def _validate(commands: Commands) -> None:
         description="Analyse a folder of public recordings whose truth is known and print the table of errors beside the"
         " figures to reach. The recordings are found by the pattern of their names; one that cannot be used is listed with"
         " the reason, and the others count. The set coverage needs no folder: it simulates walks and tells how many of the"
-        " 95 % intervals hold the truth.",
+        " 95 % intervals hold the truth. The set methods lays every published method beside its paper's own figures.",
     )
     command.add_argument("set", choices=VALIDATION_SETS, metavar="SET", help=", ".join(VALIDATION_SETS))
     command.add_argument(
@@ -134,12 +134,16 @@ def _validate(commands: Commands) -> None:
         type=_path,
         nargs="?",
         metavar="DIR",
-        help="folder of the recordings; for all: the folder above; for coverage: none",
+        help="folder of the recordings; for all and methods: the folder above; for coverage: none",
     )
     command.add_argument(
         "--json", type=_path, nargs="?", const="-", metavar="FILE", help="write JSON; - or nothing: print it"
     )
     command.add_argument("--trials", action="store_true", help="also each trial, stride or gait cycle")
+    command.add_argument(
+        "--markdown", action="store_true", help="methods: print a page instead of a table for the terminal"
+    )
+    command.add_argument("--all", action="store_true", help="methods: also calibrations, which take minutes")
     command.set_defaults(run=_late("validate", "run"), wrong_usage=command.error)
 
 

@@ -44,7 +44,8 @@ class Loop:
     rests: int
 
 
-def _loops(folder: Path) -> list[Path]:
+def loops_in(folder: Path) -> list[Path]:
+    """The loops of a folder."""
     return [path for path in files_in(folder) if path.suffix.lower() == ".csv" and _is_loop(path)]
 
 
@@ -55,7 +56,7 @@ def _is_loop(path: Path) -> bool:
 
 def fits(folder: Path) -> bool:
     """Whether a folder holds such a recording."""
-    return bool(_loops(folder))
+    return bool(loops_in(folder))
 
 
 def read_loop(path: Path) -> Recording:
@@ -110,7 +111,7 @@ def check_loop(path: Path) -> Loop:
 
 def validate(folder: Path) -> Table:
     """Row 10."""
-    paths = [path for home in folders_in(folder) for path in _loops(home)]
+    paths = [path for home in folders_in(folder) for path in loops_in(home)]
     if not paths:
         raise not_this_set(NAME, folder, WANTED)
     loops: list[Loop] = []

@@ -88,7 +88,7 @@ def test_json_says_the_same_with_null_for_what_is_not_determined() -> None:
 
 
 def test_the_command_line_offers_the_sets_that_exist() -> None:
-    assert (*SETS, "all", "coverage") == VALIDATION_SETS
+    assert (*SETS, "all", "coverage", "methods") == VALIDATION_SETS
 
 
 def test_the_command_prints_a_table_or_json_and_writes_a_file(
