@@ -23,7 +23,11 @@ def table() -> Table:
 def test_every_parameter_but_the_correction_itself_and_rare_variabilities_is_judged(table: Table) -> None:
     judged = {row.key for row in table.rows}
     missing = {one.name for one in DEFINITIONS if one.group != "variability"} - judged
-    assert missing <= {"knee_residual", "foot_progression_angle"}
+    points_where_it_walks = {
+        "foot_progression_angle",
+        "foot_progression_sd",
+    }  # a simulated foot has no truth of its own there
+    assert missing <= {"knee_residual"} | points_where_it_walks
     assert "each_stride_length" in judged
 
 
