@@ -26,7 +26,7 @@ def test_every_parameter_but_the_correction_itself_and_rare_variabilities_is_jud
     points_where_it_walks = {
         "foot_progression_angle",
         "foot_progression_sd",
-    }  # a simulated foot has no truth of its own there
+    }  # no truth of its own in simulation
     assert missing <= {"knee_residual"} | points_where_it_walks
     assert "each_stride_length" in judged
 
