@@ -85,6 +85,7 @@ def show(trial_id: Id, call: CurrentCall, length: Annotated[str, Query(max_lengt
         "sessions/compare.html",
         found=found,
         comparison=found.comparison,
+        figures=found.figures(),
         tables=question_tables(found.comparison),
         form=form,
         number=number,

@@ -32,7 +32,12 @@ class TrialComparison:
     patient_code: str
     person: Person
     comparison: Comparison
-    figures: Sequence[Figure]
+
+    def figures(self) -> Sequence[Figure]:
+        """Paths, stride lengths and agreement."""
+        from gaitlab.report.figures.methods import comparison_figures
+
+        return comparison_figures(self.comparison)
 
 
 def compare_trial(desk: Desk, trial_id: str, known_length_m: float | None = None) -> TrialComparison:
@@ -45,8 +50,6 @@ def compare_trial(desk: Desk, trial_id: str, known_length_m: float | None = None
     GaitlabError
         ``file_missing`` or ``file_damaged`` where a stored file is not as it was stored.
     """
-    from gaitlab.report.figures.methods import comparison_figures
-
     scope = desk.reading(Permission.SESSION_READ, ACTION, trial_id)
     row = records.trial(scope, trial_id)
     if row is None:
@@ -60,8 +63,7 @@ def compare_trial(desk: Desk, trial_id: str, known_length_m: float | None = None
     shown = (row.id, row.number, session.id, session.patient_id, patient_code(desk, session.patient))
     settings = Settings(course_m=session.course_m)
     desk.pause()
-    found = compare(read_files(files), settings, known_length_m, person)
-    return TrialComparison(*shown, person, found, comparison_figures(found))
+    return TrialComparison(*shown, person, compare(read_files(files), settings, known_length_m, person))
 
 
 def _person(row: Patient) -> Person:

@@ -89,12 +89,12 @@ def _thighs(inputs: Inputs) -> dict[Side, ThighView]:
 
 def missing(method: Method, inputs: Inputs, side: Side) -> tuple[Need, ...]:
     """What a method wants of a side that the recording and the caller did not give."""
-    sensor = inputs.recording.sensors[Placement.foot(side)]
+    foot = inputs.feet[side]
     there = {
-        Need.ACCELEROMETER: _holds(sensor.acc_mps2) or _holds(sensor.free_acc_mps2),
-        Need.GYROSCOPE: _holds(sensor.gyr_radps),
-        Need.MAGNETOMETER: _holds(sensor.mag),
-        Need.PRESSURE: _holds(sensor.pressure_pa),
+        Need.ACCELEROMETER: _holds(foot.acc_mps2),
+        Need.GYROSCOPE: _holds(foot.gyr_radps),
+        Need.MAGNETOMETER: _holds(foot.mag),
+        Need.PRESSURE: _holds(foot.pressure_pa),
         Need.KNEE: inputs.knee(side) is not None,
         Need.THIGH: side in inputs.thighs,
         Need.BOTH_FEET: len(inputs.feet) == 2,

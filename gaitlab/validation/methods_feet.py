@@ -117,7 +117,8 @@ def closing_table(feet: Sequence[LabelledFoot], loops: Sequence[Path]) -> PaperT
         "Closing error of every position method (Jiménez et al. 2009, §V.B)",
         "Horizontal distance from where a foot began a trial of `mtw-10m-walk` to where it ended it (20 m; a foot"
         " really ends 0.2 to 0.3 m beside, since after the turn the feet have changed sides), and the same on the"
-        " loop of `foot-loop` (23 m). Feet whose method finds fewer than two places are not counted.",
+        " loop of `foot-loop` (23 m). Feet whose method finds fewer than two places are not counted. The rests of"
+        " ikizoglu2018 want the device's own orientation, which these files have not.",
         columns,
         tuple(rows),
     )

@@ -117,8 +117,8 @@ def lengths_by_class(feet: Sequence[SeenFoot]) -> PaperTable:
     return PaperTable(
         "length_classes",
         "Step length by class of length (Sun et al. 2015, table II)",
-        "Half of each stride of one foot against the optical heel (`foot-mocap`, level walk) or mid-foot (`mtw-"
-        " leg-vicon`): RMSE in metres, average deviation in %, and how many. Each walk is its own test walk: the"
+        "Half of each stride of one foot against the optical heel (`foot-mocap`, level walk) or mid-foot"
+        " (`mtw-leg-vicon`): RMSE in metres, average deviation in %, and how many. Each walk is its own test walk: the"
         " factor sees its length as a whole, not the strides. The paper: steps of its own volunteers, sensor at"
         " the body; averages of its columns. The last figures hold strides outside the classes too.",
         columns,

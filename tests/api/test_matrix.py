@@ -43,6 +43,7 @@ RULES: dict[str, Rule] = {
     "GET /api/v1/trials/{trial_id}": Rule("rest", "session:read"),
     "GET /api/v1/trials/{trial_id}/result.json": Rule("rest", "session:read"),
     "GET /api/v1/trials/{trial_id}/series.csv": Rule("rest", "session:read"),
+    "GET /api/v1/trials/{trial_id}/comparison": Rule("rest", "session:read"),
     "GET /": Rule("page", "patient:read"),
     "GET /patients/new": Rule("page", "patient:write"),
     "POST /patients/new": Rule("page", "patient:write"),

@@ -28,6 +28,7 @@ FIXED = {
     ("/api/v1/trials/{trial_id}", "get"),
     ("/api/v1/trials/{trial_id}/result.json", "get"),
     ("/api/v1/trials/{trial_id}/series.csv", "get"),
+    ("/api/v1/trials/{trial_id}/comparison", "get"),
 }
 
 

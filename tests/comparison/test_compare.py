@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -19,8 +20,10 @@ from gaitlab.methods.catalogue import catalogue, method, of
 from gaitlab.methods.length_factors import KnownWalk, calibrate, distance_m
 from gaitlab.methods.model import Method, Need, Question
 from gaitlab.methods.steps_signals import Person, Sex, stride_signals
-from gaitlab.recording import Placement, Recording, Side, read_recording
-from tests.walks import out_and_back, without
+from gaitlab.recording import Placement, Recording, Sensor, Side, read_recording
+from gaitlab.recording.model import Floats
+from gaitlab.report.figures.methods import comparison_figures
+from tests.walks import cut, out_and_back, without
 
 PERSON = Person(1.75, Sex.MALE)
 KNEES = (Placement.LEFT_KNEE, Placement.RIGHT_KNEE)
@@ -176,6 +179,84 @@ def test_a_method_that_breaks_is_said_and_hides_no_other(
     assert "ZeroDivisionError" in line.reason
     assert found.table(Question.REST).line("jimenez2009_rest").answers
     assert "feliz2009" in caplog.text
+
+
+def odd(kind: str) -> Recording:
+    """The simulated walk with something wrong with it."""
+    walk = out_and_back().recording
+    noise = np.random.default_rng(1).normal
+    change: dict[str, Callable[[Sensor], Sensor]] = {
+        "standing": lambda s: cut(s, 0, 300),
+        "two steps": lambda s: cut(s, 350, 650),
+        "begins in the walk": lambda s: cut(s, 700, 1300),
+        "clipped": lambda s: replace(s, acc_mps2=np.clip(acc(s), -12.0, 12.0)),
+        "still gyroscope": lambda s: replace(s, gyr_radps=np.zeros_like(acc(s))),
+        "noise": lambda s: replace(s, acc_mps2=acc(s) + noise(size=acc(s).shape) * 5.0),
+        "constant field": lambda s: replace(s, mag=np.ones_like(acc(s))),
+        "noisy barometer": lambda s: replace(s, pressure_pa=101325.0 + noise(size=s.n_samples)),
+    }
+    return Recording({p: change[kind](s) for p, s in walk.sensors.items()}, walk.findings)
+
+
+def acc(sensor: Sensor) -> Floats:
+    assert sensor.acc_mps2 is not None
+    return sensor.acc_mps2
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [
+        "standing",
+        "two steps",
+        "begins in the walk",
+        "clipped",
+        "still gyroscope",
+        "noise",
+        "constant field",
+        "noisy barometer",
+    ],
+)
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+def test_poor_recordings_break_no_method_and_no_picture(kind: str) -> None:
+    found = compare(odd(kind), None, 20.0, PERSON)
+    assert not [line.method.name for table in found.tables for line in table.lines if line.failed]
+    assert to_text(found)
+    assert json.loads(to_json(found))
+    for figure in comparison_figures(found):
+        assert b"nan" not in figure.svg.lower()
+
+
+def test_a_file_with_an_orientation_instead_of_a_gyroscope_has_angular_rates() -> None:
+    analysed = simulated().analysis
+    sensors = {
+        Placement.foot(side): replace(
+            analysed.recording.sensors[Placement.foot(side)], gyr_radps=None, attitude=foot.motion.attitude
+        )
+        for side, foot in analysed.gait.feet.items()
+    }
+    found = compare(Recording(sensors, ()))
+    assert found.table(Question.REST).line("feliz2009").answers
+
+
+def test_figures_draw_every_method_and_say_which_path_leaves_the_picture() -> None:
+    found = simulated()
+    figures = {figure.name: figure for figure in comparison_figures(found)}
+    assert list(figures) == [
+        "methods_left_foot",
+        "methods_right_foot",
+        "methods_lengths",
+        "methods_agreement",
+    ]
+    for name in ("methods_left_foot", "methods_right_foot"):
+        assert all(m.name in figures[name].svg.decode() for m in of(Question.POSITION))
+        assert "leave" not in figures[name].caption or "ikizoglu2018" in figures[name].caption
+    for m in of(Question.LENGTH):
+        assert m.name in figures["methods_lengths"].svg.decode()
+        assert (m.name in figures["methods_agreement"].svg.decode()) == (m.name != "gaitlab")
+    far = replace(found.paths[0], method="far", place_m=np.array([[0.0, 0.0], [500.0, 0.0]]))
+    left = comparison_figures(replace(found, paths=(*found.paths, far)))[0]
+    assert "far" in left.caption.split("stances.")[1]
+    assert len(left.svg) < 100_000
 
 
 def test_text_and_json_say_the_same() -> None:

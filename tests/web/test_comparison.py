@@ -118,3 +118,13 @@ def test_each_look_is_in_the_trail(stored: Stored) -> None:
     assert after[-1]["patient_id"]
     house.browser(house.charlie).get(stored.path)
     assert json.dumps(looks(house.charlie)[-1]).count("refused") == 1
+
+
+def test_rest_gives_the_same_as_json(stored: Stored) -> None:
+    program = stored.house.program(stored.house.alice)
+    path = f"/api/v1{stored.path.removesuffix('/compare')}/comparison"
+    document = program.get(f"{path}?known_length_m=6").json()
+    assert document["schema"] == "gaitlab.comparison/1"
+    assert document["known_length_m"] == 6.0
+    assert {one["method"] for one in document["questions"]["step length"]} >= {"gaitlab", "weinberg"}
+    assert program.get(f"{path}?known_length_m=0").status_code == 422
