@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -24,6 +25,7 @@ from gaitlab.recording import Side
 
 router = APIRouter(include_in_schema=False, route_class=GuardedRoute)
 
+_RANGE = re.compile(r"(?<=\d)–(?=\d)")
 _NO_LENGTH = f"This must be a number from {SHORTEST_WALK_M:g} to {LONGEST_WALK_M:g}."
 
 
@@ -89,7 +91,13 @@ def show(trial_id: Id, call: CurrentCall, length: Annotated[str, Query(max_lengt
         tables=question_tables(found.comparison),
         form=form,
         number=number,
+        unbroken=unbroken,
     )
+
+
+def unbroken(text: str) -> str:
+    """The text with its ranges (``7–8``) each on one line."""
+    return _RANGE.sub("\u2060–\u2060", text)
 
 
 def _length(text: str) -> tuple[float | None, str]:

@@ -332,11 +332,15 @@ def test_no_page_is_wider_than_the_screen(
     page.get_by_label("Note").fill("n" * 150)
     upload(page, data_dir)
     session = page.url
+    compared = str(page.get_by_role("link", name="Compare methods").get_attribute("href"))
     page.set_viewport_size(size)  # type: ignore[arg-type]
     paths = (form, session, patient, f"{patient}/edit", f"{session}/trials/new", f"{session}/report.html")
     for address in (
         *paths,
-        *(site.address + path for path in ("/", "/tokens", "/help", "/docs", "/nothing", "/patients/new")),
+        *(
+            site.address + path
+            for path in ("/", "/tokens", "/help", "/docs", "/nothing", "/patients/new", compared)
+        ),
     ):
         page.goto(address)
         over = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")

@@ -74,6 +74,7 @@ def shown(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Beauti
                 f"/patients/{patient.id}/sessions/new",
                 f"/sessions/{session.id}",
                 f"/sessions/{session.id}/trials/new",
+                f"/trials/{session.trials[0].id}/compare",
             ),
         )
         pages = {path.replace(patient.id, "P").replace(session.id, "S"): browser.soup(path) for path in paths}
