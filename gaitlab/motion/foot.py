@@ -67,7 +67,8 @@ def track_foot(
     else:
         seen = oriented(calibrated, orientation(sensor, calibrated, source), rate_hz)
         up = np.array([[0.0, 0.0, 1.0]])
-    gravity = up * (STANDARD_GRAVITY_MPS2 / np.linalg.norm(up, axis=1, keepdims=True))
+    size = np.sqrt(np.einsum("ij,ij->i", up, up))
+    gravity = up * (STANDARD_GRAVITY_MPS2 / np.maximum(size, 1e-9))[:, None]
     moving = unrest(seen.force_mps2 - gravity, calibrated.gyr_radps, rate_hz)
     found = rests_in(moving)
     tilt = np.zeros((len(found), 2))

@@ -50,7 +50,7 @@ def _product(a: _Halves, b: _Halves) -> _Halves:
 
 def upright(up: Floats) -> Floats:
     """The smallest rotations that turn vectors, shape (n, 3), to the vertical; shape (n, 4)."""
-    unit = up / np.sqrt(np.einsum("ij,ij->i", up, up))[:, None]
+    unit = up / np.maximum(np.sqrt(np.einsum("ij,ij->i", up, up)), 1e-9)[:, None]
     q = np.stack([1.0 + unit[:, 2], unit[:, 1], -unit[:, 0], np.zeros(len(unit))], axis=1)
     q[q[:, 0] < 1e-6] = [0.0, 1.0, 0.0, 0.0]  # upside down: any horizontal axis will do
     turned: Floats = q / np.sqrt(np.einsum("ij,ij->i", q, q))[:, None]

@@ -73,6 +73,13 @@ def test_turning_the_sensor_on_the_foot_changes_no_place() -> None:
     np.testing.assert_allclose(other.displacement_sd_m, plain.displacement_sd_m, rtol=0.02)
 
 
+def test_a_dead_accelerometer_warns_of_nothing() -> None:
+    walk = out_and_back()
+    sensor = walk.recording.sensors[LEFT]
+    foot = track(walk, replace(sensor, acc_mps2=np.zeros((sensor.n_samples, 3))))
+    assert np.isfinite(foot.position_m).all()
+
+
 def test_a_level_floor_stays_level() -> None:
     foot = track(out_and_back())
     assert foot.level.all()
