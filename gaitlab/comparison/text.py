@@ -36,10 +36,14 @@ def answer_text(answer: Answer | None) -> str:
 
 
 def difference_text(one: Difference | None) -> str:
-    """``+1.2 ± 0.4 cm``, the interval being 95 %."""
+    """``+1.2 ± 0.4 cm``, the interval being 95 %; a dash where there are no pairs, no interval for one."""
     if one is None:
         return ""
+    if not math.isfinite(one.mean):
+        return "–"
     mean = number(one.mean, one.decimals, signed=True)
+    if not math.isfinite(one.half_width):
+        return f"{mean} {one.unit}"
     return f"{mean} ± {number(one.half_width, one.decimals)} {one.unit}"
 
 
