@@ -147,7 +147,7 @@ def _measure(
         *timing.times_and_phases(feet, steps),
         timing.stop_duration(feet, course),
         *variability.variability(spreads),
-        *walking.turns(course),
+        *walking.turns(feet, course),
         walking.path_deviation(feet, course, frame.stood_together),
         *walking.start_to_end(feet),
         *knee_parameters(knees),

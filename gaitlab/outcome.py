@@ -177,16 +177,17 @@ def _heading(gait: Gait, placement: Placement) -> str | None:
     """What a foot's heading rests on, for people."""
     if not placement.is_foot or placement.side not in gait.feet:
         return None
-    field = gait.feet[placement.side].motion.field
+    motion = gait.feet[placement.side].motion
+    field, by = motion.field, motion.heading_from
     if field is None:
-        return "gyroscope"
+        return by
     seen = (
         f"at the rests its direction scatters by {np.degrees(field.scatter_rad):.0f}° and its strength by"
         f" {100.0 * field.strength_spread:.0f} %"
     )
     if field.used:
-        return f"gyroscope, its drift corrected by the magnetometer, which agrees: {seen}"
-    return f"gyroscope; the magnetometer was left out: {seen}"
+        return f"{by}, its drift corrected by the magnetometer, which agrees: {seen}"
+    return f"{by}; the magnetometer was left out: {seen}"
 
 
 def _walk(gait: Gait) -> result.Walk:

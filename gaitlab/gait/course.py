@@ -10,11 +10,20 @@ import numpy as np
 
 from gaitlab.gait import definitions as d
 from gaitlab.gait.averages import mean_of, of_both
-from gaitlab.gait.lengths import APART, NO_FOOT, NO_STEADY, chosen_strides, independent_sd
+from gaitlab.gait.lengths import (
+    APART,
+    LOST,
+    NO_FOOT,
+    NO_STEADY,
+    chosen_strides,
+    independent_sd,
+    lost_a_stride,
+)
 from gaitlab.gait.measurement import Definition, MeasuredSide, Measurement, Status, measured, not_determinable
 from gaitlab.gait.strides import FootGait
 from gaitlab.gait.timing import LONGEST_STRIDE_S, REST_EDGE_SD_S, EventErrors, sd_in_mean
 from gaitlab.motion.course import Course
+from gaitlab.motion.smoother import SmootherParams
 from gaitlab.recording.model import Bools, Side
 
 BOTH = MeasuredSide.BOTH
@@ -59,18 +68,32 @@ def _speed(definition: Definition, side: Side, foot: FootGait, rows: Bools, reas
     return mean_of(definition, side, values, independent, common, reason)
 
 
-def turns(course: Course) -> list[Measurement]:
-    """Duration and angle of the turns."""
+def turns(feet: Mapping[Side, FootGait], course: Course) -> list[Measurement]:
+    """Duration and angle of the turns.
+
+    The scatter of a foot's change of heading falls with their number; what the gyroscopes' offsets drift, in a mean turn,
+    and what the feet differ by are common to all.
+    """
     n = len(course.turns)
     if n == 0:
         reason = "The walk has no turn."
         return [not_determinable(one, BOTH, reason) for one in (d.TURN_DURATION, d.TURN_ANGLE)]
     duration = float(np.mean([t.end_s - t.start_s for t in course.turns]))
     angle = float(np.mean([abs(np.degrees(t.angle_rad)) for t in course.turns]))
-    return [
+    known = max(foot.motion.offsets.drift_sd_radps for foot in feet.values())
+    walk = SmootherParams().drift_walk_radps * math.sqrt(max(turn.end_s for turn in course.turns))
+    drift = math.degrees(math.hypot(known, walk)) * duration
+    apart = math.degrees(float(np.mean([turn.spread_rad for turn in course.turns])))
+    sd = float(np.linalg.norm([HEADING_SCATTER_DEG / math.sqrt(n), drift, apart]))
+    measurements = [
         measured(d.TURN_DURATION, BOTH, duration, math.sqrt(2.0) * REST_EDGE_SD_S, n),
-        measured(d.TURN_ANGLE, BOTH, angle, HEADING_SCATTER_DEG / math.sqrt(n), n),
+        measured(d.TURN_ANGLE, BOTH, angle, sd, n),
     ]
+    if min(turn.seen_by for turn in course.turns) < len(feet):
+        return [
+            one.with_attention("Not every foot was recorded throughout the turns.") for one in measurements
+        ]
+    return measurements
 
 
 def path_deviation(feet: Mapping[Side, FootGait], course: Course, stood_together: bool) -> Measurement:
@@ -118,6 +141,13 @@ def start_to_end(feet: Mapping[Side, FootGait]) -> list[Measurement]:
         foot = feet[side]
         gap = float(np.linalg.norm((foot.motion.rest_position_m[-1] - foot.motion.rest_position_m[0])[:2]))
         spread = foot.motion.place_covariance_m2[-1][:2, :2]
-        sd = float(np.sqrt(np.trace(spread) / 2.0 + (foot.common_sd * gap) ** 2))
+        way = (foot.motion.rest_position_m[-1] - foot.motion.rest_position_m[0])[:2]
+        along = float(way @ spread @ way) / max(gap, 1e-9) ** 2
+        if gap**2 < float(np.trace(spread)):  # its direction says nothing then
+            along = float(np.trace(spread)) / 2.0
+        sd = float(np.sqrt(along + (foot.common_sd * gap) ** 2))
+        if lost_a_stride(foot):
+            sides.append(not_determinable(d.CLOSING_ERROR, MeasuredSide(side), LOST, len(foot)))
+            continue
         sides.append(measured(d.CLOSING_ERROR, MeasuredSide(side), gap, sd, len(foot)))
     return sides

@@ -41,9 +41,6 @@ class EventParams:
         A witness of initial contact farther than this from the median of all is not heard.
     spot_share : float
         A foot whose sensor never exceeds this share of a typical swing's peak speed turned on the spot.
-    event_sd_s : float
-        Standard deviation of both events against the hand-checked ones in mid-walk: 9.1 and 9.4 ms, the labels' own
-        error of about 4.5 ms included.
     event_bias_sd_s : float
         What is common to all events of one kind of one foot: 7.2 and 8.1 ms there. Within a foot 5.9 ms are left.
     """
@@ -63,12 +60,7 @@ class EventParams:
     impact_late_s: float = 0.007
     agreement_s: float = 0.04
     spot_share: float = 0.07
-    event_sd_s: float = 0.0095
     event_bias_sd_s: float = 0.008
-
-    def sd_s(self, rate_hz: float) -> float:
-        """Standard uncertainty of an event read off samples at this rate."""
-        return float(np.hypot(self.event_sd_s, 1.0 / rate_hz / np.sqrt(12.0)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,8 +16,11 @@ from gaitlab.recording.model import Bools, Floats, Side
 
 NO_STEADY = "There is no stride on a straight part."
 APART = "The feet are not known to have stood together before the walk, so the place of one says nothing of the other's."
+UNKNOWN_STRIDE_M = 1.0
+"""A foot of which one stride is more uncertain than this, most of a stride, has no distance."""
 WIDTH_SD_M = 0.1
 """A step width more uncertain than this, a whole step width, is not given."""
+LOST = "How far the foot went while samples were lost is not known."
 NO_STEP = "There is no step between two strides on a straight part."
 NO_FOOT = "The {side} foot was not recorded."
 ONE_FOOT = "It needs both feet; the {side} foot was not recorded."
@@ -51,6 +54,11 @@ def stride_length(feet: Mapping[Side, FootGait]) -> list[Measurement]:
     return [*sides, of_both(*sides)]
 
 
+def lost_a_stride(foot: FootGait) -> bool:
+    """How far one of its strides went is not known at all."""
+    return bool((foot.length_sd_m > UNKNOWN_STRIDE_M).any())
+
+
 def distance_of(foot: FootGait) -> tuple[float, float]:
     """Distance travelled by a foot in metres, and its standard uncertainty."""
     total = float(foot.length_m.sum())
@@ -70,6 +78,9 @@ def traversed_distance(feet: Mapping[Side, FootGait]) -> list[Measurement]:
         if n == 0:
             sides.append(not_determinable(d.DISTANCE, MeasuredSide(side), "The foot made no stride."))
         else:
+            if lost_a_stride(feet[side]):
+                sides.append(not_determinable(d.DISTANCE, MeasuredSide(side), LOST, n))
+                continue
             one = measured(d.DISTANCE, MeasuredSide(side), total, sd, n)
             sides.append(replace(one, common_sd=feet[side].common_sd * total))
     return [*sides, of_both(*sides, a_mean=False)]

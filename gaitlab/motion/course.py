@@ -36,6 +36,8 @@ class CourseParams:
         Turning strides that together turn less than this are no turn of the walk.
     min_straight_m : float
         Shorter stretches give no direction.
+    unseen_share : float
+        A foot that lost more of a movement's rows did not see whether it turned.
     """
 
     min_stride_m: float = 0.1
@@ -46,15 +48,19 @@ class CourseParams:
     curve_strides: int = 3
     turn_rad: float = 0.79
     min_straight_m: float = 1.0
+    unseen_share: float = 0.5
 
 
 @dataclass(frozen=True)
 class TurnSpan:
-    """A turn of the walk: times in seconds and the angle in radians, positive to the left."""
+    """A turn of the walk: times in seconds and the angle in radians, positive to the left; by how much the feet that saw
+    it differ from their mean, and how many did."""
 
     start_s: float
     end_s: float
     angle_rad: float
+    spread_rad: float = 0.0
+    seen_by: int = 2
 
 
 @dataclass(frozen=True)
@@ -89,6 +95,7 @@ class Swings:
     turning: Bools
     walking: Bools
     place_m: Floats
+    unseen: Bools
 
     @classmethod
     def of(cls, foot: FootMotion, params: CourseParams) -> Swings:
@@ -99,7 +106,7 @@ class Swings:
         turning = _turning(change, params)
         walking = turning | (np.linalg.norm(np.diff(place, axis=0), axis=1) >= params.min_stride_m)
         leave, reach = foot.time_s[last[:-1]], foot.time_s[foot.rests.start[1:]]
-        return cls(leave, reach, change, turning, walking, place)
+        return cls(leave, reach, change, turning, walking, place, foot.doubtful_share > params.unseen_share)
 
     @property
     def middle_s(self) -> Floats:
@@ -110,6 +117,11 @@ class Swings:
     def spans(self, chosen: Bools) -> list[Span]:
         """Intervals of the chosen swings."""
         return [(float(self.leave_s[k]), float(self.reach_s[k])) for k in np.flatnonzero(chosen)]
+
+    def saw(self, span: Span) -> bool:
+        """No movement in an interval was lost for the most part."""
+        inside = (self.reach_s > span[0]) & (self.leave_s < span[1])
+        return not bool((self.unseen & inside).any())
 
     def turn_within(self, span: Span) -> float:
         """Change of heading over the turning strides in an interval."""
@@ -186,5 +198,13 @@ def _turns(swings: Sequence[Swings], turning: Sequence[Span], p: CourseParams) -
             merged[-1] = (merged[-1][0], max(end, merged[-1][1]))
         else:
             merged.append((start, end))
-    turns = [TurnSpan(*span, float(np.mean([one.turn_within(span) for one in swings]))) for span in merged]
+    turns = [_turn(swings, span) for span in merged]
     return [turn for turn in turns if abs(turn.angle_rad) >= p.turn_rad]
+
+
+def _turn(swings: Sequence[Swings], span: Span) -> TurnSpan:
+    """A turn by the feet that saw it; by all where none did."""
+    seeing = [one for one in swings if one.saw(span)]
+    angles = [one.turn_within(span) for one in seeing or swings]
+    spread = 0.5 * (max(angles) - min(angles))
+    return TurnSpan(*span, float(np.mean(angles)), spread, len(seeing))

@@ -34,6 +34,14 @@ class StrideEvidence:
     min_turn_rad: float = 0.15
 
 
+HEADING_FROM = {
+    OrientationSource.STRAPDOWN: "gyroscope",
+    OrientationSource.VQF: "gyroscope, by VQF",
+    OrientationSource.DEVICE: "device's own orientation",
+}
+"""What a foot's heading rests on, for people."""
+
+
 def track_foot(
     sensor: Sensor,
     time_s: Floats,
@@ -82,7 +90,8 @@ def track_foot(
         foot = _unmoved(free, rests)
     else:
         foot = follow(sensor, calibrated, seen, free, rests, np.diff(tilt[kept], axis=0), anchor)
-    return with_field(replace(foot, restlessness=restlessness(moving)), sensor.mag)
+    foot = replace(foot, restlessness=restlessness(moving), heading_from=HEADING_FROM[source])
+    return foot if source is OrientationSource.DEVICE else with_field(foot, sensor.mag)
 
 
 def _best_source(sensor: Sensor, calibrated: Calibrated) -> OrientationSource:

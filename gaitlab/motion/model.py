@@ -181,6 +181,8 @@ class FootMotion(Motion):
         Turn of the foot about the vertical from each rest to the next, positive to the left.
     restlessness : float or None
         How near to rest it ever comes, see ``rest.restlessness``.
+    heading_from : str
+        What its orientation was taken from: ``gyroscope``, ``VQF`` or ``device``.
     field : FieldEvidence or None
         What the magnetometer said of the heading; None where it said nothing.
     """
@@ -195,6 +197,7 @@ class FootMotion(Motion):
     level: Bools
     turn_rad: Floats
     restlessness: float | None = None
+    heading_from: str = "gyroscope"
     field: FieldEvidence | None = None
 
     def turned(self, yaw_rad: float) -> Self:

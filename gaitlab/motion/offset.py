@@ -31,6 +31,8 @@ class StandingParams:
     alike, always_quiet : float
         Seconds with up to this many times the scatter of the quietest, or up to this share of the largest that still is
         standing, are as quiet as it.
+    most_lost_share : float
+        A second that lost more of its rows shows no standing; some real ones lost a quarter of theirs.
     sway_rad : float
         How far a standing foot turns between the beginning and the end of a stretch of standing.
     unknown_drift_radps : float
@@ -44,6 +46,7 @@ class StandingParams:
     max_acc_sd_mps2: float = 0.2
     alike: float = 2.0
     always_quiet: float = 0.3
+    most_lost_share: float = 0.4
     sway_rad: float = 0.01
     unknown_drift_radps: float = 0.005
 
@@ -62,7 +65,11 @@ def _scatter(values: Floats, block: int, blocks: int) -> Floats:
 
 
 def find_standing(
-    acc: Floats, gyr: Floats, rate_hz: float, params: StandingParams | None = None
+    acc: Floats,
+    gyr: Floats,
+    rate_hz: float,
+    params: StandingParams | None = None,
+    received: Bools | None = None,
 ) -> tuple[int, int, bool]:
     """Find the stretch of at least a second in which the sensor stands still.
 
@@ -81,6 +88,13 @@ def find_standing(
         return 0, len(acc), False
     gyr_sd, acc_sd = _scatter(gyr, block, blocks), _scatter(acc, block, blocks)
     unrest = np.maximum(gyr_sd / p.max_rate_sd_radps, acc_sd / p.max_acc_sd_mps2)
+    if (
+        received is not None and not received.all()
+    ):  # a lost row repeats another, and what is repeated looks still
+        whole = len(received) // block * block
+        lost = np.concatenate([[0], np.cumsum((~received[:whole]).reshape(-1, block).sum(axis=1))])
+        share = (lost[blocks:] - lost[:-blocks]) / (block * blocks)
+        unrest = np.where(share > p.most_lost_share, np.maximum(unrest, 2.0), unrest)
     runs = _runs(unrest <= 1.0)
     if not len(runs):
         start = int(np.argmin(unrest))
@@ -109,8 +123,8 @@ def find_offsets(sensor: Sensor, acc: Floats, gyr: Floats, params: StandingParam
     """Offsets of a sensor: gyroscope mean, and what the accelerometer reads beside one standard gravity, while
     standing.
 
-    Where nobody stands still, the gyroscope's offset cannot be told from movement and is left at zero (the
-    orientation filter still estimates it), and the accelerometer's is taken from the quietest second.
+    Where nobody stands still, neither offset can be told from movement, and both are left at zero: the orientation filter
+    still estimates the gyroscope's, the smoother the accelerometer's.
 
     Source: İkizoğlu et al. 2018, §3.2 (mean over 2–3 s). Deviations: (1) the offset is taken in the sensor's frame,
     where it is constant, not in the world's; (2) gravity's size is part of it: of 92 real sensors 48 read more than
@@ -119,10 +133,10 @@ def find_offsets(sensor: Sensor, acc: Floats, gyr: Floats, params: StandingParam
     """
     p = params or StandingParams()
     rate_hz = sensor.rate_hz
-    start, end, standing = find_standing(acc, gyr, rate_hz, p)
+    start, end, standing = find_standing(acc, gyr, rate_hz, p, sensor.received)
     mean_acc = acc[start:end].mean(axis=0)
     size = float(np.linalg.norm(mean_acc))
-    acc_offset = mean_acc * (1.0 - STANDARD_GRAVITY_MPS2 / size) if size > 0 else np.zeros(3)
+    acc_offset = mean_acc * (1.0 - STANDARD_GRAVITY_MPS2 / size) if standing and size > 0 else np.zeros(3)
     gyr_offset = gyr[start:end].mean(axis=0) if standing else np.zeros(3)
     drift_sd = p.sway_rad * rate_hz / (end - start) if standing else p.unknown_drift_radps
     a, g = acc_offset.tolist(), gyr_offset.tolist()

@@ -25,17 +25,18 @@ class PathParams:
     Attributes
     ----------
     white_mps2 : float
-        Standard deviation of a sample at 100 Hz. MTw noise: 0.03.
+        Standard deviation of a sample at 100 Hz. MTw noise: 0.03; the rest is the sensor's play on the foot.
     averaged_share, sampled_share : float
         Error of a sample as a share of its difference from its neighbours, for a device that sends means over its intervals
-        and for one that sends instants: 0.0025 explains the velocities left at the 1,500 passages of ``mtw-10m-walk``,
-        0.1 those of ``foot-mocap``, where heel strikes fall between the samples.
+        and for one that sends instants: 0.0025 explains the velocities left at the 1,500 passages of ``mtw-10m-walk``, taken
+        twice; 0.1 those of ``foot-mocap``, where heel strikes fall between the samples.
     saturated_mps2 : float
         What a sample at the end of the range may hide.
     gap_share : float
         Error of the place in a gap as a share of acceleration times its duration squared: 1/12 for a linear change.
-    blind_gap_s, blind_sd_m : float
-        Over a longer gap the movement is not known and its displacement is uncertain by a stride.
+    blind_gap_s, blind_sd_m, blind_mps : float
+        Over a longer gap the movement is not known and its displacement is uncertain by a stride, its velocity by a
+        swing's.
     """
 
     white_mps2: float = 0.05
@@ -45,6 +46,7 @@ class PathParams:
     gap_share: float = 1.0 / 12.0
     blind_gap_s: float = 0.3
     blind_sd_m: float = 0.7
+    blind_mps: float = 2.0
 
 
 @dataclass(frozen=True)
@@ -108,11 +110,16 @@ def follow(
     force, rotation = seen.force_mps2, seen.rotation
     variance = _variance(force, sensor, p)
     passages = integrate(force, rotation, variance, rests, rate_hz, STANDARD_GRAVITY_MPS2)
-    gaps = _gap_variance(force, sensor, rests, p)
-    passages = replace(passages, displacement_var=passages.displacement_var + gaps)
+    gaps, faster = _gap_variance(force, sensor, rests, p)
+    passages = replace(
+        passages,
+        displacement_var=passages.displacement_var + gaps,
+        velocity_var=passages.velocity_var + faster,
+    )
     last = leaving(rests)
     rest_s = (rests.end - rests.start) / rate_hz
-    known = Known(calibrated.up, tilt_change_rad, calibrated.offsets.drift_sd_radps, rest_s)
+    offsets = calibrated.offsets
+    known = Known(calibrated.up, offsets.standing, tilt_change_rad, offsets.drift_sd_radps, rest_s)
     smoothed = smooth(passages, known, STANDARD_GRAVITY_MPS2)
     if anchor is not None and (fixes := anchor.fixes(smoothed.place_m)):
         smoothed = smooth(passages, replace(known, fixes=fixes), STANDARD_GRAVITY_MPS2)
@@ -154,21 +161,30 @@ def _variance(force: Floats, sensor: Sensor, p: PathParams) -> Floats:
     return variance
 
 
-def _gap_variance(force: Floats, sensor: Sensor, rests: Rests, p: PathParams) -> Floats:
-    """What gaps add to the variance of each passage's displacement, per axis, shape (k − 1,)."""
-    added = np.zeros(len(rests) - 1)
+def _gap_variance(force: Floats, sensor: Sensor, rests: Rests, p: PathParams) -> tuple[Floats, Floats]:
+    """What gaps add to the variances of each passage's displacement and velocity, per axis, shape (k − 1,) each.
+
+    A device that sends the mean over a gap has lost the velocity of none but a blind one.
+    """
+    added, faster = np.zeros(len(rests) - 1), np.zeros(len(rests) - 1)
     if sensor.received.all():
-        return added
+        return added, faster
     edges = np.flatnonzero(np.diff(np.concatenate([[False], ~sensor.received, [False]]).astype(np.int8)))
     start, end = edges[::2], edges[1::2]
     duration_s = (end - start + 1) / sensor.rate_hz
     size = np.linalg.norm(force[start] - np.array([0.0, 0.0, STANDARD_GRAVITY_MPS2]), axis=1)
     variance = (p.gap_share * size * duration_s**2) ** 2
-    variance[duration_s > p.blind_gap_s] += p.blind_sd_m**2
+    blind = duration_s > p.blind_gap_s
+    variance[blind] += p.blind_sd_m**2
     passage = np.searchsorted(rests.start[1:], start, "right")
     inside = (passage < len(added)) & (end > leaving(rests)[np.minimum(passage, len(added))])
     np.add.at(added, passage[inside], variance[inside])
-    return added
+    np.add.at(
+        faster,
+        passage[inside & blind],
+        (p.gap_share * size * duration_s)[inside & blind] ** 2 + p.blind_mps**2,
+    )
+    return added, faster
 
 
 def _corrections(smoothed: Smoothed, rests: Rests, n_rows: int) -> Floats:
@@ -207,12 +223,12 @@ def _through(
     passage = np.minimum(phase.astype(np.intp), len(missing) - 1)
     u = phase - passage
     bent, faster = np.empty_like(position), np.empty_like(velocity)
-    smooth, slope = (
+    bend, slope = (
         u * u * (3.0 - 2.0 * u),
         6.0 * u * (1.0 - u) * (rate_hz / (reach[1:] - last[:-1]))[passage],
     )
     for axis in range(3):
         lacking = missing[passage, axis]
-        bent[:, axis] = position[:, axis] + total[passage, axis] + lacking * smooth
+        bent[:, axis] = position[:, axis] + total[passage, axis] + lacking * bend
         faster[:, axis] = velocity[:, axis] + lacking * slope
     return bent, faster

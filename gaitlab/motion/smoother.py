@@ -44,6 +44,8 @@ class SmootherParams:
         What a second adds to accelerometer offset, heading and the heading's drift.
     strange : float
         A passage whose velocity is off by more than this many standard deviations is as uncertain as it is off.
+    fastest_mps : float
+        But no more uncertain than a walking foot's mean speed allows.
     """
 
     rest_speed_mps: float = 0.01
@@ -60,6 +62,7 @@ class SmootherParams:
     heading_walk_rad: float = 2e-3
     drift_walk_radps: float = 1e-4
     strange: float = 3.0
+    fastest_mps: float = 1.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +112,9 @@ class Known:
     Attributes
     ----------
     up : ndarray (3,)
-        Direction of gravity in the sensor's axes while standing, where its size was measured.
+        Direction of gravity in the sensor's axes while standing.
+    stood : bool
+        Its size was measured then.
     tilt_change_rad : ndarray (k − 1, 2)
         Turn about the horizontal axes from rest to rest that was taken out of the gyroscope's orientation to make it level.
     drift_sd_radps : float
@@ -121,6 +126,7 @@ class Known:
     """
 
     up: Floats
+    stood: bool
     tilt_change_rad: Floats
     drift_sd_radps: float
     rest_s: Floats
@@ -195,7 +201,8 @@ def _statements(
     value[:, 0:3], value[:, 3:6] = way, -passages.velocity_mps
     moving = p.rest_speed_mps**2
     ends = passages.late_s**2 + (passages.duration_s - passages.late_s) ** 2
-    variance[:, 0:3] = (doubt * (passages.displacement_var + moving * ends))[:, None]
+    way_var = doubt * (passages.displacement_var + moving * ends)
+    variance[:, 0:3] = np.minimum(way_var, (p.fastest_mps * passages.duration_s) ** 2)[:, None]
     variance[:, 3:6] = (doubt * (passages.velocity_var + 2.0 * moving))[:, None]
     before[:, 6, FLOOR], after[:, 6, FLOOR] = -1.0, 1.0
     variance[:, 6] = np.where(level, p.slope_m**2, np.inf)
@@ -223,8 +230,9 @@ def _alone(passages: Passages, known: Known, gravity_mps2: float, p: SmootherPar
     floor = np.ix_(range(k), (HEIGHT, FLOOR), (HEIGHT, FLOOR))
     diagonal[floor] += np.array([[1.0, -1.0], [-1.0, 1.0]]) / p.level_sd_m**2
     along = np.outer(known.up, known.up)
+    along_sd = p.offset_along_sd_mps2 if known.stood else p.offset_sd_mps2
     first = diagonal[0]
-    first[OFFSET, OFFSET] += along / p.offset_along_sd_mps2**2 + (np.eye(3) - along) / p.offset_sd_mps2**2
+    first[OFFSET, OFFSET] += along / along_sd**2 + (np.eye(3) - along) / p.offset_sd_mps2**2
     first[[0, 1, 2], [0, 1, 2]] += 1e12
     first[HEADING, HEADING] += 1e12
     first[DRIFT, DRIFT] += known.drift_sd_radps**-2.0

@@ -72,16 +72,17 @@ _LENGTHS = (
     "traversed_distance",
 )
 _TIMES = ("stride_time", "step_time", "cadence", "stance_share", "swing_share", "double_support_share")
+_TURNS = ("turn_duration", "turn_angle")
 _TESTS = ("walk_time", "walk_speed", "course_check")
 _PATHS = (*_LENGTHS, *_TESTS, "path_deviation", "closing_distance", "knee_sway")
-_ALL = (*_PATHS, *_TIMES, "stop_duration", "turn_duration", "turn_angle", "knee_residual")
+_ALL = (*_PATHS, *_TIMES, "stop_duration", *_TURNS, "knee_residual")
 RESERVES: dict[str, tuple[tuple[str, ...], str]] = {
     "no_standing": (_PATHS, "Nobody stood still, so the sensors' offsets are less certain."),
     "few_straight": ((*_LENGTHS[:4], *_TIMES), "First and last strides are in it."),
     "not_one_walk": (_ALL, "The two feet do not alternate as in one walk."),
     "few_rests": (_ALL, "The method found too few rests."),
-    "many_lost": ((*_PATHS, *_TIMES), "Many samples were lost."),
-    "long_gap": ((*_PATHS, *_TIMES), "A long part of the recording was lost."),
+    "many_lost": ((*_PATHS, *_TIMES, *_TURNS), "Many samples were lost."),
+    "long_gap": ((*_PATHS, *_TIMES, *_TURNS), "A long part of the recording was lost."),
     "partly_recorded": (
         ("traversed_distance", "closing_distance", *_TESTS),
         "A foot was not recorded throughout.",
@@ -221,7 +222,7 @@ def _of_sensor(placement: Placement, motion: Motion) -> list[Finding]:
     if not offsets.standing:
         message = (
             f"The {placement.label} never stands still for a second: the gyroscope's offset is left to the orientation"
-            " filter and the accelerometer's comes from the quietest second."
+            " filter and the accelerometer's to the path."
         )
         found.append(Finding("no_standing", message, placement))
     elif not offsets.as_in_paper:
