@@ -12,7 +12,7 @@ from gaitlab.motion.free import Calibrated, Oriented
 from gaitlab.motion.integration import position_of, reset_at_rests, velocity_of
 from gaitlab.motion.model import FootMotion, Indices, Motion, Rests
 from gaitlab.motion.offset import STANDARD_GRAVITY_MPS2
-from gaitlab.motion.passages import integrate, leaving
+from gaitlab.motion.passages import Passages, integrate, leaving
 from gaitlab.motion.quaternions import cross, multiply
 from gaitlab.motion.smoother import Fix, Known, Smoothed, smooth
 from gaitlab.recording.model import Floats, Sensor
@@ -109,26 +109,13 @@ def follow(
     rate_hz = free.rate_hz
     force, rotation = seen.force_mps2, seen.rotation
     variance = _variance(force, sensor, p)
-    passages = integrate(force, rotation, variance, rests, rate_hz, STANDARD_GRAVITY_MPS2)
-    gaps, faster = _gap_variance(force, sensor, rests, p)
-    passages = replace(
-        passages,
-        displacement_var=passages.displacement_var + gaps,
-        velocity_var=passages.velocity_var + faster,
-    )
-    last = leaving(rests)
-    rest_s = (rests.end - rests.start) / rate_hz
-    offsets = calibrated.offsets
-    known = Known(calibrated.up, offsets.standing, tilt_change_rad, offsets.drift_sd_radps, rest_s)
-    smoothed = smooth(passages, known, STANDARD_GRAVITY_MPS2)
-    if anchor is not None and (fixes := anchor.fixes(smoothed.place_m)):
-        smoothed = smooth(passages, replace(known, fixes=fixes), STANDARD_GRAVITY_MPS2)
+    passages = _passages(seen, variance, sensor, rests, p)
+    smoothed = _smoothed(passages, calibrated, rests, rate_hz, tilt_change_rad, anchor)
     turn = _corrections(smoothed, rests, free.n_samples)
     acceleration = _corrected(force, rotation, turn, smoothed, rests)
-    clock = np.cumsum(variance)
-    velocity, _ = reset_at_rests(velocity_of(acceleration, rate_hz), rests, clock)
+    velocity, _ = reset_at_rests(velocity_of(acceleration, rate_hz), rests, np.cumsum(variance))
     position = position_of(velocity, rate_hz)
-    position, velocity = _through(smoothed.place_m, position, velocity, rests.start, last, rate_hz)
+    position, velocity = _through(smoothed.place_m, position, velocity, rests.start, leaving(rests), rate_hz)
     attitude = multiply(strapdown.small_rotation(turn), free.attitude)
     residual = np.concatenate([np.zeros((1, 3)), passages.velocity_mps])
     moved = {
@@ -147,6 +134,36 @@ def follow(
         passages.velocity_var,
         smoothed.level,
     )
+
+
+def _passages(seen: Oriented, variance: Floats, sensor: Sensor, rests: Rests, p: PathParams) -> Passages:
+    """The integrals from rest to rest, with what gaps hide."""
+    passages = integrate(
+        seen.force_mps2, seen.rotation, variance, rests, sensor.rate_hz, STANDARD_GRAVITY_MPS2
+    )
+    gaps, faster = _gap_variance(seen.force_mps2, sensor, rests, p)
+    return replace(
+        passages,
+        displacement_var=passages.displacement_var + gaps,
+        velocity_var=passages.velocity_var + faster,
+    )
+
+
+def _smoothed(
+    passages: Passages,
+    calibrated: Calibrated,
+    rests: Rests,
+    rate_hz: float,
+    tilt_change_rad: Floats,
+    anchor: Anchor | None,
+) -> Smoothed:
+    """The estimates at the rests; a second time with what is known of the course, where something is."""
+    offsets, rest_s = calibrated.offsets, (rests.end - rests.start) / rate_hz
+    known = Known(calibrated.up, offsets.standing, tilt_change_rad, offsets.drift_sd_radps, rest_s)
+    smoothed = smooth(passages, known, STANDARD_GRAVITY_MPS2)
+    if anchor is not None and (fixes := anchor.fixes(smoothed.place_m)):
+        return smooth(passages, replace(known, fixes=fixes), STANDARD_GRAVITY_MPS2)
+    return smoothed
 
 
 def _variance(force: Floats, sensor: Sensor, p: PathParams) -> Floats:
