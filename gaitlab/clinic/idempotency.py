@@ -73,8 +73,14 @@ def earlier(desk: Desk, scope: Scope, asked: Request) -> str | None:
     if asked.key is None:
         return None
     row = records.earlier_answer(scope, desk.principal.user_id, asked.key)
-    if row is None or row.created_at <= desk.now() - dt.timedelta(days=desk.clinic.settings.idempotency_days):
-        return None
+    return None if row is None or _outdated(desk, row) else _answer(row, asked)
+
+
+def _outdated(desk: Desk, row: Idempotency) -> bool:
+    return row.created_at <= desk.now() - dt.timedelta(days=desk.clinic.settings.idempotency_days)
+
+
+def _answer(row: Idempotency, asked: Request) -> str:
     if row.request_sha256 != asked.sha256:
         raise InputError(
             "idempotency_key_reused",
@@ -89,12 +95,13 @@ def claim(desk: Desk, scope: Scope, asked: Request, object_id: str) -> str:
     """Note what the request makes: ``object_id``, or the id that the same request made a moment earlier."""
     if asked.key is None:
         return object_id
-    existing = earlier(desk, scope, asked)
-    if existing is not None:
-        return existing
-    outdated = records.earlier_answer(scope, desk.principal.user_id, asked.key)
-    if outdated is not None:
-        scope.db.delete(outdated)
+    there = records.earlier_answer(
+        scope, desk.principal.user_id, asked.key
+    )  # once: another may commit at any moment
+    if there is not None:
+        if not _outdated(desk, there):
+            return _answer(there, asked)
+        scope.db.delete(there)
         scope.db.flush()
     row = Idempotency(
         site_id=scope.site_id,
@@ -106,4 +113,4 @@ def claim(desk: Desk, scope: Scope, asked: Request, object_id: str) -> str:
     )
     if records.add_unless_there(scope, row):
         return object_id
-    return earlier(desk, scope, asked) or object_id
+    return earlier(desk, scope, asked) or claim(desk, scope, asked, object_id)
